@@ -7,7 +7,7 @@
 //! every equation, and every word of an error, is that of the crate below it.
 //!
 //! # Rooms
-//! - `begin`: axes to begin with. `loops`: margins and tuning of an axis' loops. `linear`: state space and frequency responses. `controller`: an unknown one, from logs.
+//! - `begin`: axes to begin with. `loops`: margins and tuning of an axis' loops. `frf`: frequency responses from logs. `linear`: state space and frequency responses. `controller`: an unknown one, from logs.
 //! - `axis`, `motion`, `simulate`, `run`: an axis from a file or a dict, along a motion, to
 //!   arrays.
 //! - `check`: an axis against the data sheets of its parts.
@@ -37,6 +37,7 @@ mod discover;
 mod discovery;
 mod errors;
 mod export;
+mod frf;
 mod html;
 mod identify;
 mod learn;

@@ -18,3 +18,4 @@ pub mod peers_cases;
 pub mod publish;
 pub mod torture;
 pub mod tuning;
+mod tuning_files;

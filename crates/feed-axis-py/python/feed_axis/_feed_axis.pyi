@@ -183,7 +183,7 @@ class Axis:
         - `frictions`: as shares of the file's; 1, if left out.
         - `delay_cycles`: delay besides the file's, control cycles.
 
-        Its keys are those of `feed-axis analyse --format json`: `worst` has the greatest sensitivities, `corners` the margins of each case,
+        Its keys are those of `feed-axis analyse --format json`: `worst` has the maximum sensitivities, `corners` the margins of each case,
         `curves` the frequency responses of the first two cases: `frequency_hz`, and pairs of real and imaginary part in `open_command`,
         `open_position`, `speed_followed` and `compliance` (the load's motion per force on it).
 
@@ -228,7 +228,7 @@ class Axis:
 
         `position` and `stuck` as of `state_space`; `delay_cycles`: delay besides the file's, control cycles. Keys: `open_command` (the loop cut at
         the command), `open_position` (the position loop, its speed loop closed), `speed_followed` (the motor's speed per set point of the speed
-        controller), `compliance` (the load's motion per force on it, m/N or rad/(N·m)). They are those of `analyse`.
+        controller; empty of a PID controller), `compliance` (the load's motion per force on it, m/N or rad/(N·m)). They are those of `analyse`.
 
         Raises LoopError.
 
@@ -247,22 +247,51 @@ class Axis:
         acceleration: bool = True,
         notch: bool = True,
         current: bool = False,
+        frf: _Log | Sequence[_Log] | None = None,
     ) -> tuple[Axis, dict[str, Any]]:
         """Gains of the loops that hold the load best within limits of the sensitivity: the axis that has them, and what was found.
 
-        - `sensitivity`: greatest sensitivity at the command and at the position, in every case.
+        - `sensitivity`: maximum sensitivity at the command and at the position, in every case.
         - `sensitivity_late`: the same with one more cycle of delay.
         - `ripple`: greatest ripple of the command by the steps of the speed's sensor, as a share of the greatest command (RMS).
         - `positions`, `masses`, `frictions`: the cases, as of `analyse`.
         - `acceleration`: whether the acceleration is fed forward; `notch`: whether a notch may be set; `current`: whether the current
           controllers are set too.
+        - `frf`: a log or a list of logs of the excited axis, as of `frf`: the limits hold for the loops with the measured responses too,
+          and the delay that they show is in the model's.
 
         What was found has the keys of `feed-axis tune --format json`: `keys` has the keys of the axis file that were set, `limiting` what
         limits the gains, `helps` what would help, `moves` the moves of the file simulated before and after.
 
-        Raises LoopError.
+        Raises LoopError, also for a measured response that must not be tuned on; LogError.
 
         >>> tuned, found = axis.tune(sensitivity=1.5)
+        """
+    def frf(
+        self,
+        logs: _Log | Sequence[_Log],
+        *,
+        columns: _Columns = ...,
+        step_hz: float | None = None,
+        coherence: float = 0.9,
+        poles: _Whole = 10,
+    ) -> list[dict[str, Any]]:
+        """Frequency responses estimated from logs of the excited axis: a dict for each log.
+
+        - `logs`: a log or a list of logs, one for each place of the load, with position, command and excitation (`excitation_a`,
+          `excitation_n_m`, `excitation_n` or `drive_command_added_v`), every control cycle.
+        - `columns`: channels of columns with other names, as of `discover`.
+        - `step_hz`: distance of two lines; those of a periodic excitation, or 1.2 Hz, if left out.
+        - `coherence`: least coherence of a line that counts. `poles`: most poles of the fit; a mode has two.
+
+        Keys are those of an item of `measurements` of `feed-axis frf --format json`: `motor_speed` and `load` have the lines (`frequency_hz`,
+        `value` as real and imaginary part, `deviation`, `coherence`), `fit` the modes, `margins` those with the gains of the file, `comparison`
+        what differs from the model, `traps` what is wrong with the measurement.
+
+        Raises LoopError if no response can be estimated; LogError.
+
+        >>> found = axis.frf("slide.parquet")[0]
+        >>> delay_s = found["comparison"]["delay_s"]["value"]
         """
     def simulate(
         self,
@@ -272,6 +301,7 @@ class Axis:
         noise: float = 0.0,
         exact: bool = False,
         seed: _Whole = 1,
+        excitation: ArrayLike | None = None,
         progress: _Progress | None = None,
     ) -> Run:
         """Follows a motion in closed loop.
@@ -283,6 +313,8 @@ class Axis:
         - `noise`: noise of every sensor beside the axis file's own, in multiples of good sensors' noise, 0 or above.
         - `exact`: simulate by the slow, exact method, to stand for a machine.
         - `seed`: of the noise; the same seed gives the same bits.
+        - `excitation`: numbers that are added to the command behind the controller, one for each control cycle from the first on, in the
+          unit of the command; zeros if there are fewer. The run has them as a channel, such as `excitation_a`.
         - `progress`: called with (what, done, total) on this thread, at most every 50 ms; what it raises ends the work.
 
         Raises MotionError if the axis cannot take the motion, SimulationError if the run does not come to its end, ValueError for a noise below 0.

@@ -45,6 +45,7 @@ pub fn page(context: &Context, results: &Results) -> Page {
     page.section(mechanics::friction(context, results))
         .section(mechanics::vibration(results))
         .section(mechanics::modes(results))
+        .section(loops::of_pipeline(context, &results.loops))
         .section(network::study(results))
         .section(settings(context, results))
 }
