@@ -16,6 +16,9 @@ pub const MODEL_IDENTIFIER: &str = "feed_axis";
 /// The axis file among the unit's resources.
 pub const AXIS_FILE: &str = "axis.toml";
 
+/// The correction of a compensated unit, among them.
+pub const CORRECTION_FILE: &str = "correction.json";
+
 /// What the library of this version holds in its data, and another one does not.
 pub const LIBRARY_MARK: &str = concat!(
     "library of feed-axis units, version ",
@@ -88,7 +91,7 @@ pub fn package(unit: &Unit, library: &[u8], version: FmiVersion) -> Result<Vec<u
         .compression_method(CompressionMethod::Deflated)
         .last_modified_time(DateTime::default())
         .unix_permissions(0o644);
-    let files = [
+    let mut files = vec![
         (
             "modelDescription.xml".to_owned(),
             description.as_bytes(),
@@ -105,6 +108,10 @@ pub fn package(unit: &Unit, library: &[u8], version: FmiVersion) -> Result<Vec<u
             plain.unix_permissions(0o755),
         ),
     ];
+    files.extend(unit.correction().map(|correction| {
+        let path = format!("resources/{CORRECTION_FILE}");
+        (path, correction.text().as_bytes(), plain)
+    }));
     for (path, bytes, options) in files {
         archive.start_file(path, options)?;
         archive.write_all(bytes)?;

@@ -49,6 +49,39 @@ fn a_unit_is_written_whole_and_told() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
 }
 
+/// A unit with its correction inside: that it is among the resources, and what is said of it.
+#[test]
+fn a_compensated_unit_is_written_with_its_correction() {
+    let folder = tempfile::tempdir().unwrap();
+    let (out, library) = (folder.path().join("belt.fmu"), library(folder.path()));
+    let export = export("data/axes/belt.toml", &out, &library);
+    let plan = [&export[..], &["--strategy", "plan"]].concat();
+    let said = succeed(&plan);
+    assert!(
+        said.contains("corrected by plan; references are followed") && said.contains("late"),
+        "{said}"
+    );
+    let told = succeed(&[&plan[..], &["--format", "json"]].concat());
+    let told: Value = serde_json::from_str(&told).unwrap();
+    assert_eq!(
+        (told["kind"].as_str(), told["strategy"].as_str()),
+        (Some("compensated closed loop"), Some("plan"))
+    );
+    assert!(told["look_ahead_cycles"].as_u64() > Some(2));
+    for (strategy, words) in [
+        ("adaptive", "plan, feedback"),
+        ("drive-terms", "export drive"),
+        ("network", "train"),
+    ] {
+        let run = folder.path().join("runs");
+        let run = ["--strategy", strategy, "--run", run.to_str().unwrap()];
+        let message = refuse(&[&export[..], &run].concat());
+        assert!(message.contains(words), "{strategy}: {message}");
+    }
+    let message = refuse(&[&plan[..], &["--plant"]].concat());
+    assert!(message.contains("--plant"), "{message}");
+}
+
 #[test]
 fn what_cannot_be_exported_is_said() {
     let folder = tempfile::tempdir().unwrap();

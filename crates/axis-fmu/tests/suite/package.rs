@@ -10,6 +10,11 @@ use crate::text;
 /// A text file of the unit of an axis.
 fn part(axis: &str, version: FmiVersion, path: &str) -> String {
     let bytes = package(&crate::unit(axis), &library(), version).unwrap();
+    read(bytes, path)
+}
+
+/// A text file of these bytes.
+fn read(bytes: Vec<u8>, path: &str) -> String {
     let mut archive = ZipArchive::new(Cursor::new(bytes)).unwrap();
     let mut part = String::new();
     let mut file = archive.by_name(path).unwrap();
@@ -19,6 +24,17 @@ fn part(axis: &str, version: FmiVersion, path: &str) -> String {
 
 fn library() -> Vec<u8> {
     format!("stands for a library: {LIBRARY_MARK}").into_bytes()
+}
+
+/// A correction is among the resources, as it was given.
+#[test]
+fn a_compensated_unit_takes_its_correction_along() {
+    let correction = "{\"strategy\":\"plan\"}";
+    let unit = Unit::compensated("belt.toml", &text("belt.toml"), correction).unwrap();
+    for version in [FmiVersion::V2, FmiVersion::V3] {
+        let bytes = package(&unit, &library(), version).unwrap();
+        assert_eq!(read(bytes, "resources/correction.json"), correction);
+    }
 }
 
 #[test]
