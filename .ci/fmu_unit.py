@@ -2,6 +2,7 @@
 
 import csv
 import ctypes
+import json
 import subprocess
 from pathlib import Path
 
@@ -135,10 +136,17 @@ def run(program, *arguments):
     subprocess.run([program, *arguments], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
-def log_of(program, axis, folder):
+def told(program, *arguments):
+    """What the program says, in JSON."""
+    said = subprocess.run([program, *arguments, "--format", "json"], check=True, capture_output=True)
+    return json.loads(said.stdout)
+
+
+def log_of(program, axis, folder, compensation="none"):
     """The columns of what `simulate` makes of the first trajectory."""
-    file = Path(folder) / f"{axis}.csv"
-    run(program, "simulate", "--axis", f"data/axes/{axis}.toml", "--trajectory", "1", "--log", str(file))
+    file = Path(folder) / f"{axis}-{compensation}.csv"
+    arguments = ["--axis", f"data/axes/{axis}.toml", "--compensation", compensation, "--trajectory", "1"]
+    run(program, "simulate", *arguments, "--log", str(file))
     with open(file, newline="") as rows:
         rows = list(csv.reader(rows))
     return {name: [float(row[i]) for row in rows[1:]] for i, name in enumerate(rows[0])}

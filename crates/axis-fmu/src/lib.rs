@@ -38,6 +38,7 @@ mod description;
 mod error;
 mod history;
 mod kind;
+mod library;
 mod measure;
 mod mode;
 mod outputs;
@@ -54,12 +55,10 @@ pub use correction::UnitCorrection;
 pub use description::description;
 pub use error::UnitError;
 pub use kind::UnitKind;
+pub use library::{LIBRARY_MARK, UnitLibrary, library_file};
 pub use measure::UnitDefinition;
 pub use mode::FmiMode;
-pub use package::{
-    AXIS_FILE, CORRECTION_FILE, LIBRARY_MARK, MODEL_IDENTIFIER, PackageError, library_file,
-    package, platform,
-};
+pub use package::{AXIS_FILE, CORRECTION_FILE, MODEL_IDENTIFIER, PackageError, package};
 pub use unit::Unit;
 pub use variables::{Variable, VariableKind, Variables};
 pub use version::FmiVersion;

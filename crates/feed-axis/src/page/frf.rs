@@ -1,7 +1,7 @@
 //! The page of measured frequency responses.
 
 use axis_log::PlusMinus;
-use axis_report::{Cell, Figure, Notice, Page, Section, Series, Table};
+use axis_report::{Cell, Figure, Notice, Page, Section, Series, Table, engineering};
 use axis_sim::Axis;
 use drive_loop::{MeasuredDrive, WithDeviation};
 
@@ -21,11 +21,7 @@ pub fn page(axis: &Axis, all: &[MeasuredDrive]) -> Page {
 }
 
 fn place(found: &MeasuredDrive) -> String {
-    format!(
-        "{} {}",
-        axis_sim::SixDigits(found.position),
-        found.position_unit
-    )
+    engineering(found.position, &found.position_unit, 4)
 }
 
 fn pair(of: WithDeviation, scale: f64, digits: usize) -> Cell {

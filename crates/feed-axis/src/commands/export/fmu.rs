@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use axis_fmu::{FmiVersion, Unit, UnitCorrection, UnitKind, VariableKind};
+use axis_fmu::{FmiVersion, Unit, UnitCorrection, UnitKind, UnitLibrary, VariableKind};
 use axis_pipeline::strategies::StrategyKind;
 use axis_sim::SixDigits;
 use clap::{Args, ValueEnum};
@@ -35,9 +35,10 @@ pub struct Options {
     /// identified friction need `identify`; plan and feedback need the axis file alone
     #[arg(long, value_name = "NAME", value_parser = strategy_name_of(EXPORTED), conflicts_with = "plant")]
     strategy: Option<&'static StrategyKind>,
-    /// Library of units, of the same version [default: the one beside this program]
-    #[arg(long, value_name = "FILE")]
-    library: Option<PathBuf>,
+    /// Library of units, of the same version; once for each platform that the unit is for, which
+    /// the file's header says [default: the one beside this program]
+    #[arg(long = "library", value_name = "FILE")]
+    libraries: Vec<PathBuf>,
 }
 
 /// Versions, as they are asked for.
@@ -62,7 +63,7 @@ struct Exported<'a> {
     strategy: Option<&'a str>,
     /// Control periods by which references are followed late.
     look_ahead_cycles: usize,
-    platform: String,
+    platforms: Vec<String>,
     step_s: f64,
     inputs: usize,
     outputs: usize,
@@ -80,7 +81,7 @@ impl fmt::Display for Exported<'_> {
             self.fmi_version,
             self.axis,
             self.kind,
-            self.platform,
+            self.platforms.join(", "),
             self.inputs,
             self.outputs,
             self.parameters,
@@ -108,17 +109,25 @@ pub fn command(options: &Options) -> Result<()> {
         Fmi::Two => FmiVersion::V2,
         Fmi::Three => FmiVersion::V3,
     };
-    let (platform, _) = axis_fmu::platform(version).into_diagnostic()?;
     // First, so that what is wrong with the axis is told before what is missing beside it.
     let failed = || format!("no unit of {name}");
     let unit = unit(options, &name, &text).wrap_err_with(failed)?;
-    let file = library(options)?;
-    let library = std::fs::read(&file).into_diagnostic();
-    let library = library.wrap_err_with(|| format!("cannot read {}", file.display()))?;
-    let package = axis_fmu::package(&unit, &library, version);
-    let bytes = package
-        .into_diagnostic()
-        .wrap_err_with(|| format!("no unit of {name} with {}", file.display()))?;
+    let files = libraries(options)?;
+    let contents = files.iter().map(|file| {
+        let read = std::fs::read(file).into_diagnostic();
+        read.wrap_err_with(|| format!("cannot read {}", file.display()))
+    });
+    let contents: Vec<Vec<u8>> = contents.collect::<Result<_>>()?;
+    let known = files.iter().zip(&contents).map(|(file, bytes)| {
+        let library = UnitLibrary::of(bytes);
+        let library = library.and_then(|library| Ok((library, library.platform(version)?)));
+        let with = || format!("no unit of {name} with {}", file.display());
+        library.into_diagnostic().wrap_err_with(with)
+    });
+    let (libraries, platforms): (Vec<_>, Vec<_>) =
+        known.collect::<Result<Vec<_>>>()?.into_iter().unzip();
+    let bytes = axis_fmu::package(&unit, &libraries, version);
+    let bytes = bytes.into_diagnostic().wrap_err_with(failed)?;
     write_whole(&options.out, &bytes)?;
     let count = |is: fn(&VariableKind) -> bool| {
         let all = unit.variables().iter();
@@ -134,7 +143,7 @@ pub fn command(options: &Options) -> Result<()> {
             kind: unit.kind().words(),
             strategy: options.strategy.map(|strategy| strategy.name),
             look_ahead_cycles: unit.look_ahead(),
-            platform,
+            platforms,
             step_s: unit.axis().period,
             inputs: count(|kind| matches!(kind, VariableKind::Input(_))),
             outputs: count(|kind| matches!(kind, VariableKind::Output(_))),
@@ -159,16 +168,16 @@ fn unit(options: &Options, name: &str, text: &str) -> Result<Unit> {
     Unit::of(kind, name, text).into_diagnostic()
 }
 
-/// The library: as given, or beside this program.
-fn library(options: &Options) -> Result<PathBuf> {
-    if let Some(file) = &options.library {
-        return Ok(file.clone());
+/// The libraries: as given, or the one beside this program.
+fn libraries(options: &Options) -> Result<Vec<PathBuf>> {
+    if !options.libraries.is_empty() {
+        return Ok(options.libraries.clone());
     }
     let name = axis_fmu::library_file().into_diagnostic()?;
     let program = std::env::current_exe().into_diagnostic()?;
     let file = program.with_file_name(name);
     match file.is_file() {
-        true => Ok(file),
+        true => Ok(vec![file]),
         false => Err(miette!(
             "there is no library of units at {}: make it with `cargo build --release -p \
              feed-axis-fmu` from the sources of this version, and put it there or give it with \
