@@ -2,7 +2,10 @@
 
 import csv
 import ctypes
+import json
+import math
 import subprocess
+import tomllib
 from pathlib import Path
 
 from fmpy import extract, read_model_description
@@ -135,10 +138,38 @@ def run(program, *arguments):
     subprocess.run([program, *arguments], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
+def told(program, *arguments):
+    """What the program says, in JSON."""
+    said = subprocess.run([program, *arguments, "--format", "json"], check=True, capture_output=True)
+    return json.loads(said.stdout)
+
+
 def log_of(program, axis, folder):
     """The columns of what `simulate` makes of the first trajectory."""
     file = Path(folder) / f"{axis}.csv"
     run(program, "simulate", "--axis", f"data/axes/{axis}.toml", "--trajectory", "1", "--log", str(file))
+    return columns(file)
+
+
+def late_log_of(program, axis, folder, compensation, start, standstill):
+    """The same of the trajectory after a standstill (s), compensated."""
+    with open(f"data/axes/{axis}.toml", "rb") as file:
+        move = tomllib.load(file)["trajectory"][0]
+    unit = "mm" if "displacement_mm" in move else "deg"
+    start = 1e3 * start if unit == "mm" else math.degrees(start)
+    names = {f"speed_{unit}_per_s": f"velocity_{unit}_s"}
+    keys = {names.get(key, key.replace("_per_", "_")): value for key, value in move.items()}
+    keys[f"to_{unit}"] = start + keys.pop(f"displacement_{unit}")
+    program_file, file = (Path(folder) / f"{axis}-{compensation}.{end}" for end in ("toml", "csv"))
+    inner = ", ".join(f"{key} = {value!r}" for key, value in keys.items())
+    steps = f"[[steps]]\ndwell = {{ duration_s = {standstill!r} }}\n[[steps]]\nmove = {{ {inner} }}\n"
+    program_file.write_text(f"start_{unit} = {start!r}\n{steps}")
+    arguments = ["--axis", f"data/axes/{axis}.toml", "--compensation", compensation, "--program", str(program_file)]
+    run(program, "simulate", *arguments, "--log", str(file))
+    return columns(file)
+
+
+def columns(file):
     with open(file, newline="") as rows:
         rows = list(csv.reader(rows))
     return {name: [float(row[i]) for row in rows[1:]] for i, name in enumerate(rows[0])}

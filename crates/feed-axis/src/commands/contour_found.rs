@@ -3,6 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use axis_log::PlusMinus;
 use serde::Serialize;
 
 use super::contour::{Both, Reversal};
@@ -139,7 +140,9 @@ impl fmt::Display for MachineContoured {
                 (found.squareness_um_per_m, found.crosstalk_um_per_m_per_s2);
             writeln!(
                 f,
-                "squareness of X and Y {phi:.2} ± {d_phi:.2} µm/m, cross-talk {k:.2} ± {d_k:.2} µm/(m/s²), from circles"
+                "squareness of X and Y {} µm/m, cross-talk {} µm/(m/s²), from circles",
+                PlusMinus::new(phi, d_phi, 2),
+                PlusMinus::new(k, d_k, 2)
             )?;
         }
         writeln!(

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use axis_log::intake::Options as Intake;
+use axis_log::{PlusMinus, never_zero};
 use axis_sim::{Axis, SixDigits, known_channels};
 use clap::Args;
 use drive_loop::{MeasureSettings, MeasuredDrive, WithDeviation};
@@ -105,11 +106,7 @@ pub fn measured(
 }
 
 fn pair(of: WithDeviation, scale: f64, digits: usize) -> String {
-    format!(
-        "{:.digits$} ± {:.digits$}",
-        scale * of.value,
-        scale * of.deviation
-    )
+    PlusMinus::new(scale * of.value, scale * of.deviation, digits).to_string()
 }
 
 /// A measurement as people read it.
@@ -207,10 +204,10 @@ fn table(found: &MeasuredDrive) -> String {
         let magnitude = re.hypot(im);
         let _ = writeln!(
             text,
-            "  {:>8.2}  {:>11.4e}  {:>8.2}  {:>7.1}  {:>9.4}  {:>11.4e}",
+            "  {:>8.2}  {:>11.4e}  {:>8}  {:>7.1}  {:>9.4}  {:>11.4e}",
             line.frequency_hz,
             magnitude,
-            100.0 * line.deviation / magnitude,
+            never_zero(100.0 * line.deviation / magnitude, 2),
             im.atan2(re).to_degrees(),
             line.coherence,
             model[0].hypot(model[1])

@@ -1,6 +1,7 @@
 //! The page of measured frequency responses.
 
-use axis_report::{Cell, Figure, Notice, Page, Section, Series, Table};
+use axis_log::PlusMinus;
+use axis_report::{Cell, Figure, Notice, Page, Section, Series, Table, engineering};
 use axis_sim::Axis;
 use drive_loop::{MeasuredDrive, WithDeviation};
 
@@ -20,16 +21,14 @@ pub fn page(axis: &Axis, all: &[MeasuredDrive]) -> Page {
 }
 
 fn place(found: &MeasuredDrive) -> String {
-    format!(
-        "{} {}",
-        axis_sim::SixDigits(found.position),
-        found.position_unit
-    )
+    engineering(found.position, &found.position_unit, 4)
 }
 
 fn pair(of: WithDeviation, scale: f64, digits: usize) -> Cell {
     let (value, deviation) = (scale * of.value, scale * of.deviation);
-    Cell::text(format!("{value:.digits$} ± {deviation:.digits$}"))
+    let pair = PlusMinus::new(value, deviation, digits).to_string();
+    // The page's minus sign.
+    Cell::text(pair.replacen('-', "\u{2212}", usize::from(value < 0.0)))
 }
 
 fn margins(all: &[MeasuredDrive]) -> Section {

@@ -19,7 +19,7 @@ pub mod robustness;
 mod tracking;
 
 use axis_pipeline::strategies::{NETWORK, NETWORK_LUGRE, StrategyKind};
-use axis_report::{Block, Cell, KeyValues, Mark, Notice, Page, Section, Table};
+use axis_report::{Block, Cell, KeyValues, Mark, Notice, Page, Section, Table, fixed};
 use axis_sim::mechanism::SolutionMethod;
 
 use crate::context::Context;
@@ -79,8 +79,8 @@ fn overview(context: &Context, results: &Results) -> Section {
             Cell::number(none.max, 2),
             Cell::number(network.max, 2),
             Cell::number(both.max, 2),
-            Cell::text(format!("{peak:.1} %")),
-            Cell::text(format!("{mean:.1} %")),
+            Cell::text(format!("{} %", fixed(peak, 1))),
+            Cell::text(format!("{} %", fixed(mean, 1))),
         ]);
     }
     let machine = if context.has_machine {
