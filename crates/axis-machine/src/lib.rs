@@ -56,8 +56,8 @@ pub use coupling::{AxisCoupling, Coupling};
 pub use driven::{Driven, trace};
 pub use error::{CircleFitError, MachineError};
 pub use file::{
-    AxisName, BaseText, CouplingText, GantryText, MachineAxes, MachineFile, MachineFileError,
-    MachineText,
+    AxisName, BaseText, CouplingText, FileDrive, GantryText, MachineAxes, MachineFile,
+    MachineFileError, MachineText,
 };
 pub use gantry::GantryBeam;
 pub use identify::{CircleEstimate, CirclesFound, MeasuredCircle, fit_circles};

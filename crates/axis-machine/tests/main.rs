@@ -4,6 +4,7 @@ mod coupled;
 mod file;
 mod identify;
 mod moving;
+mod pairs;
 
 use axis_machine::{AxisMotion, Driven, MachineError, trace};
 use axis_sim::{Axis, ClosedLoop};

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ._feed_axis import Discovery, Run
+    from ._feed_axis import Contour, Discovery, Run
 
 
 def _axes(ax: Axes | None) -> Axes:
@@ -49,5 +51,33 @@ def plot_discovery(found: Discovery, ax: Axes | None) -> Axes:
     ax.set_yscale("log")
     ax.set_ylabel("RMS gap (SI unit of the channel)")
     ax.set_title(found.verdict)
+    ax.legend()
+    return ax
+
+
+def plot_contour(contour: Contour, ax: Axes | None) -> Axes:
+    """Radial deviation of a circle over the angle; of another path the contour error along it."""
+    radius = contour.radius_m
+    if ax is None and radius is not None:
+        try:
+            from matplotlib import pyplot
+        except ImportError as error:
+            raise ImportError("plot needs matplotlib; install it: pip install matplotlib") from error
+        ax = pyplot.figure().add_subplot(projection="polar")
+    ax = _axes(ax)
+    is_polar = ax.name == "polar"
+    for direction in contour:
+        lap = contour[direction]
+        if radius is None:
+            ax.plot(1e3 * lap["s_m"], 1e6 * lap["error_m"], label=direction)
+            continue
+        order = np.argsort(lap["angle_rad"])
+        angle, deviation = lap["angle_rad"][order], 1e6 * lap["deviation_m"][order]
+        ax.plot(angle if is_polar else np.degrees(angle), deviation, label=direction)
+    if radius is None:
+        ax.set_xlabel("arc length (mm)")
+    elif not is_polar:
+        ax.set_xlabel("angle (°)")
+    ax.set_ylabel("contour error (µm)" if radius is None else "radial deviation (µm)")
     ax.legend()
     return ax
