@@ -59,5 +59,8 @@ fn a_pair_that_cannot_run_is_refused_in_one_sentence() {
         "the load of axis 2 (from 1) turns; valid: an axis that moves along a line"
     );
     let message = pair("rack-push", "linear-stage");
-    assert!(message.starts_with("axis 1 (from 1): this axis has no [control]"), "{message}");
+    assert!(
+        message.starts_with("axis 1 (from 1): this axis has no [control]"),
+        "{message}"
+    );
 }

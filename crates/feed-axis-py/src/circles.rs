@@ -90,11 +90,10 @@ impl PyCirclesFound {
     }
 
     fn __repr__(&self) -> String {
-        let [(phi, d_phi), (k, d_k)] =
-            [&self.0.squareness, &self.0.crosstalk].map(|one| {
-                let (value, error) = pair(one);
-                (1e6 * value, 1e6 * error)
-            });
+        let [(phi, d_phi), (k, d_k)] = [&self.0.squareness, &self.0.crosstalk].map(|one| {
+            let (value, error) = pair(one);
+            (1e6 * value, 1e6 * error)
+        });
         format!(
             "CirclesFound(squareness {phi:.2} ± {d_phi:.2} µm/m, cross-talk {k:.2} ± {d_k:.2} µm/(m/s²))"
         )
@@ -153,5 +152,7 @@ pub(crate) fn fit_circles(
             points: &points[i],
         });
     }
-    fit(&measured).map(PyCirclesFound).map_err(raise::<SearchError>)
+    fit(&measured)
+        .map(PyCirclesFound)
+        .map_err(raise::<SearchError>)
 }

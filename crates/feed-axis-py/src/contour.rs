@@ -24,7 +24,11 @@ pub(crate) struct PyContour {
 }
 
 /// Names of the columns of position and foot.
-const AXES: [[&str; 2]; 3] = [["x_m", "foot_x_m"], ["y_m", "foot_y_m"], ["z_m", "foot_z_m"]];
+const AXES: [[&str; 2]; 3] = [
+    ["x_m", "foot_x_m"],
+    ["y_m", "foot_y_m"],
+    ["z_m", "foot_z_m"],
+];
 
 /// Columns of a sense's last lap: arc length, error, position and foot; of a circle angle and radial deviation.
 fn columns(shown: &Shown, radius: Option<f64>) -> Vec<(&'static str, Vec<f64>)> {
@@ -43,7 +47,10 @@ fn columns(shown: &Shown, radius: Option<f64>) -> Vec<(&'static str, Vec<f64>)> 
         let tool = || shown.at.iter().map(|at| at[0]);
         let angle = tool().map(|[x, y]| y.atan2(x).rem_euclid(TAU));
         all.push(("angle_rad", angle.collect()));
-        all.push(("deviation_m", tool().map(|[x, y]| x.hypot(y) - radius).collect()));
+        all.push((
+            "deviation_m",
+            tool().map(|[x, y]| x.hypot(y) - radius).collect(),
+        ));
     }
     all
 }
@@ -82,7 +89,12 @@ impl Value for PyContour {
     }
 
     fn restored(state: &Bound<'_, PyTuple>) -> PyResult<Self> {
-        type State<'py> = (String, String, Option<f64>, Vec<(usize, Bound<'py, PyBytes>)>);
+        type State<'py> = (
+            String,
+            String,
+            Option<f64>,
+            Vec<(usize, Bound<'py, PyBytes>)>,
+        );
         let (text, path_at_feed, radius, senses): State<'_> = state.extract()?;
         let mut found: MachineContoured =
             serde_json::from_str(&text).map_err(raise::<SimulationError>)?;
@@ -149,11 +161,14 @@ impl PyContour {
     fn frame<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let frame = PyDict::new(py);
         let senses = &self.found.directions;
-        let names = senses.iter().flat_map(|one| {
-            std::iter::repeat_n(one.direction.as_str(), one.shown.s.len())
-        });
+        let names = senses
+            .iter()
+            .flat_map(|one| std::iter::repeat_n(one.direction.as_str(), one.shown.s.len()));
         frame.set_item("direction", names.collect::<Vec<_>>())?;
-        let all: Vec<_> = senses.iter().map(|one| columns(&one.shown, self.radius)).collect();
+        let all: Vec<_> = senses
+            .iter()
+            .map(|one| columns(&one.shown, self.radius))
+            .collect();
         for (i, (name, _)) in all.first().into_iter().flatten().enumerate() {
             let column = all.iter().flat_map(|columns| columns[i].1.iter().copied());
             frame.set_item(name, column.collect::<Vec<_>>().into_pyarray(py))?;
@@ -167,12 +182,15 @@ impl PyContour {
     /// Arrays of one direction's last lap, by name.
     fn __getitem__<'py>(&self, py: Python<'py>, direction: &str) -> PyResult<Bound<'py, PyDict>> {
         let found = self.found.directions.iter();
-        let found = found.clone().find(|one| one.direction == direction).ok_or_else(|| {
-            PyKeyError::new_err(format!(
-                "there is no direction {direction:?}; there are: {}",
-                self.keys().join(", ")
-            ))
-        })?;
+        let found = found
+            .clone()
+            .find(|one| one.direction == direction)
+            .ok_or_else(|| {
+                PyKeyError::new_err(format!(
+                    "there is no direction {direction:?}; there are: {}",
+                    self.keys().join(", ")
+                ))
+            })?;
         let dict = PyDict::new(py);
         for (name, values) in columns(&found.shown, self.radius) {
             let values: Bound<'_, PyArray1<f64>> = values.into_pyarray(py);
@@ -204,7 +222,11 @@ impl PyContour {
     /// Greatest contour error of the last lap, m.
     #[getter]
     fn max_error(&self) -> f64 {
-        let last = self.found.directions.iter().filter_map(|one| one.laps.last());
+        let last = self
+            .found
+            .directions
+            .iter()
+            .filter_map(|one| one.laps.last());
         metres(last.map(|lap| lap.contour_error_um).fold(0.0, f64::max))
     }
 
@@ -347,7 +369,11 @@ impl PyContour {
     }
 
     fn __repr__(&self) -> String {
-        let laps = self.found.directions.first().map_or(0, |one| one.laps.len());
+        let laps = self
+            .found
+            .directions
+            .first()
+            .map_or(0, |one| one.laps.len());
         format!(
             "Contour({}, {laps} lap(s), contour error max {:.4} µm in the last)",
             self.found.title(),

@@ -140,8 +140,11 @@ fn axes_of(given: &Bound<'_, PyAny>) -> PyResult<Vec<PyAxis>> {
             if let Some(other) = keys.iter().find(|key| !NAMES.contains(&key.as_str())) {
                 return Err(refused(format!("has the key {other:?}")));
             }
-            let here = NAMES.iter().filter(|name| keys.iter().any(|key| key == *name));
-            here.map(|name| mapping.get_item(name)).collect::<PyResult<_>>()?
+            let here = NAMES
+                .iter()
+                .filter(|name| keys.iter().any(|key| key == *name));
+            here.map(|name| mapping.get_item(name))
+                .collect::<PyResult<_>>()?
         }
         Err(_) => match given.try_iter() {
             Ok(items) => items.collect::<PyResult<_>>()?,
@@ -185,7 +188,11 @@ fn tables_of(
         own.update(mapping)?;
         if name == "gantry" {
             let second = own.get_item("second")?;
-            let axis = second.and_then(|s| s.extract::<PyRef<'_, PyAxis>>().ok().map(|a| PyAxis::clone(&a)));
+            let axis = second.and_then(|s| {
+                s.extract::<PyRef<'_, PyAxis>>()
+                    .ok()
+                    .map(|a| PyAxis::clone(&a))
+            });
             let axis = axis.ok_or_else(|| refused("has no Axis as its second".to_owned()))?;
             own.set_item("second", &axis.axis.name)?;
             seconds.push(axis);

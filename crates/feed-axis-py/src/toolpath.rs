@@ -8,7 +8,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyString, PyTuple, PyType};
 use toolpath::named::butterfly;
-use toolpath::{Nurbs, NurbsData, Path, PathTolerances, gcode};
+use toolpath::{Blend, Nurbs, NurbsData, Path, PathBlending, PathTolerances, gcode};
 
 use crate::arrays::{line, rows};
 use crate::errors::{MotionError, raise, text_of};
@@ -28,8 +28,24 @@ enum Made {
     Circle(f64, Option<f64>),
     Butterfly,
     Nurbs(Curve),
-    Points(Vec<f64>, usize),
-    Gcode(String, String),
+    Points(Vec<f64>, usize, Corners),
+    Gcode(String, String, Corners),
+}
+
+/// Whether corners of lines are blended: tolerance (m), shape.
+type Corners = (Option<f64>, String);
+
+fn shape_of(name: &str) -> PyResult<Blend> {
+    Ok(match name {
+        "quintic" => Blend::Quintic,
+        "arc" => Blend::Arc,
+        "parabola" => Blend::Parabola,
+        _ => {
+            return Err(MotionError::new_err(format!(
+                "blend_shape is {name:?}; valid: quintic, arc, parabola"
+            )));
+        }
+    })
 }
 
 /// Control points, coordinates of each, knots, degree, weights.
@@ -103,13 +119,23 @@ impl PyToolpath {
                 let values = (&curve.points[..], curve.columns);
                 whole("curve", any(values, |p| curve.path(p), |p| curve.path(p))?)
             }
-            Made::Points(values, columns) => {
+            Made::Points(values, columns, (tolerance, shape)) => {
+                let shape = shape_of(shape)?;
                 let flat = |p: Vec<_>| Path::polyline(&p).map_err(raise::<MotionError>);
                 let space = |p: Vec<_>| Path::polyline(&p).map_err(raise::<MotionError>);
-                whole("points", any((values, *columns), flat, space)?)
+                let choice = whole("points", any((values, *columns), flat, space)?);
+                match *tolerance {
+                    None => choice,
+                    Some(tolerance) => {
+                        let blended = choice.blended(&PathBlending { tolerance, shape });
+                        blended.map_err(raise::<MotionError>)?
+                    }
+                }
             }
-            Made::Gcode(text, name) => {
-                let runs = gcode::read(text, [0.0; 3], &PathTolerances::default());
+            Made::Gcode(text, name, (tolerance, shape)) => {
+                let blending = (shape_of(shape)?, *tolerance);
+                let tolerances = PathTolerances::default();
+                let runs = gcode::read_blended(text, [0.0; 3], &tolerances, blending);
                 let runs = runs.map_err(raise::<MotionError>)?;
                 if runs.is_empty() {
                     return Err(MotionError::new_err(format!(
@@ -137,10 +163,13 @@ impl Value for PyToolpath {
                 let weights = tuple(&c.weights)?;
                 ("nurbs", points, c.columns, knots, c.degree, weights).into_pyobject(py)
             }
-            Made::Points(values, columns) => {
-                ("points", PyTuple::new(py, values)?, *columns).into_pyobject(py)
+            Made::Points(values, columns, corners) => {
+                let values = PyTuple::new(py, values)?;
+                ("points", values, *columns, corners.clone()).into_pyobject(py)
             }
-            Made::Gcode(text, name) => ("gcode", text, name).into_pyobject(py),
+            Made::Gcode(text, name, corners) => {
+                ("gcode", text, name, corners.clone()).into_pyobject(py)
+            }
         }
     }
 
@@ -163,12 +192,14 @@ impl Value for PyToolpath {
                 })
             }
             "points" => {
-                let (_, values, columns): (String, Vec<f64>, usize) = state.extract()?;
-                Made::Points(values, columns)
+                let (_, values, columns, corners): (String, Vec<f64>, usize, Corners) =
+                    state.extract()?;
+                Made::Points(values, columns, corners)
             }
             "gcode" => {
-                let (_, text, name): (String, String, String) = state.extract()?;
-                Made::Gcode(text, name)
+                let (_, text, name, corners): (String, String, String, Corners) =
+                    state.extract()?;
+                Made::Gcode(text, name, corners)
             }
             _ => Made::Butterfly,
         })
@@ -214,22 +245,43 @@ impl PyToolpath {
 
     /// Straight lines through points, a row a point.
     #[staticmethod]
-    fn points(points_m: &Bound<'_, PyAny>) -> PyResult<Self> {
+    #[pyo3(signature = (points_m, *, blend_m = None, blend_shape = "quintic"))]
+    fn points(
+        points_m: &Bound<'_, PyAny>,
+        blend_m: Option<f64>,
+        blend_shape: &str,
+    ) -> PyResult<Self> {
         let (values, columns) = rows::<MotionError>(points_m, "points_m")?;
-        Self::of(Made::Points(values, columns))
+        Self::of(Made::Points(
+            values,
+            columns,
+            (blend_m, blend_shape.to_owned()),
+        ))
     }
 
     /// A program in G-code, from its text.
     #[staticmethod]
-    fn gcode(text: String) -> PyResult<Self> {
-        Self::of(Made::Gcode(text, "program".to_owned()))
+    #[pyo3(signature = (text, *, blend_m = None, blend_shape = "quintic"))]
+    fn gcode(text: String, blend_m: Option<f64>, blend_shape: &str) -> PyResult<Self> {
+        let corners = (blend_m, blend_shape.to_owned());
+        Self::of(Made::Gcode(text, "program".to_owned(), corners))
     }
 
     /// A program in G-code, from a file.
     #[classmethod]
-    fn load(kind: &Bound<'_, PyType>, path: PathBuf) -> PyResult<Self> {
+    #[pyo3(signature = (path, *, blend_m = None, blend_shape = "quintic"))]
+    fn load(
+        kind: &Bound<'_, PyType>,
+        path: PathBuf,
+        blend_m: Option<f64>,
+        blend_shape: &str,
+    ) -> PyResult<Self> {
         let text = text_of::<MotionError>(kind.py(), &path)?;
-        let made = Self::of(Made::Gcode(text, format!("program {}", path.display())));
+        let (name, corners) = (
+            format!("program {}", path.display()),
+            (blend_m, blend_shape.to_owned()),
+        );
+        let made = Self::of(Made::Gcode(text, name, corners));
         made.map_err(|error| {
             let py = kind.py();
             match error.is_instance_of::<MotionError>(py) {
@@ -280,6 +332,9 @@ impl PyToolpath {
     }
 }
 
+/// The shape of blends where none is named.
+const QUINTIC: &str = "quintic";
+
 /// A path as a caller may give it.
 pub(crate) struct AnyToolpath(pub PathChoice);
 
@@ -291,7 +346,9 @@ impl FromPyObject<'_, '_> for AnyToolpath {
             return Ok(Self(path.get().choice.clone()));
         }
         if given.is_instance_of::<PyString>() {
-            return Ok(Self(PyToolpath::gcode(given.extract()?)?.choice));
+            return Ok(Self(
+                PyToolpath::gcode(given.extract()?, None, QUINTIC)?.choice,
+            ));
         }
         if given.len().is_err() || given.hasattr("keys")? {
             return Err(PyTypeError::new_err(format!(
@@ -299,6 +356,6 @@ impl FromPyObject<'_, '_> for AnyToolpath {
                 given.get_type().name()?
             )));
         }
-        Ok(Self(PyToolpath::points(&given)?.choice))
+        Ok(Self(PyToolpath::points(&given, None, QUINTIC)?.choice))
     }
 }

@@ -39,7 +39,10 @@ pub fn pairs(bench: &Bench) -> Result<Measured> {
     let ran = all.iter().filter(|(ran, _)| *ran).count();
     let words: Vec<&str> = all.iter().map(|(_, words)| words.as_str()).collect();
     Ok(Measured {
-        what: format!("pairs of {} kinds of axis, R 20 mm, 3 m/min: none, plan, adaptive feedback second lap", KINDS.len()),
+        what: format!(
+            "pairs of {} kinds of axis, R 20 mm, 3 m/min: none, plan, adaptive feedback second lap",
+            KINDS.len()
+        ),
         goal: "each runs, or one sentence why not".to_owned(),
         found: format!("{ran} of {pairs} ran; {} others refused", REFUSED.len()),
         met: Some(ran == pairs),

@@ -579,20 +579,28 @@ class Toolpath:
         Raises MotionError for numbers that are no curve.
         """
     @staticmethod
-    def points(points_m: ArrayLike) -> Toolpath:
-        """Straight lines through points, a row of 2 or 3 coordinates (m) each; the feed stops at every corner.
+    def points(
+        points_m: ArrayLike, *, blend_m: float | None = None, blend_shape: Literal["quintic", "arc", "parabola"] = "quintic"
+    ) -> Toolpath:
+        """Straight lines through points, a row of 2 or 3 coordinates (m) each. The feed stops at every corner, unless `blend_m` blends it within
+        this distance; at the ends of an arc or a parabola it stops too, unless `acceleration_step` allows a step.
 
         Raises MotionError for fewer than two points, or two alike that follow one another.
         """
     @staticmethod
-    def gcode(text: str) -> Toolpath:
-        """A program in G-code (G0 to G3), from its text; it begins at the origin.
+    def gcode(
+        text: str, *, blend_m: float | None = None, blend_shape: Literal["quintic", "arc", "parabola"] = "quintic"
+    ) -> Toolpath:
+        """A program in G-code (G0 to G3), from its text; it begins at the origin. `blend_m` is the tolerance before the first G61 or G64 P,
+        `blend_shape` that of all blends.
 
         Raises MotionError with the line, and what would be valid.
         """
     @classmethod
-    def load(cls, path: _Path) -> Toolpath:
-        """A program in G-code, from a file.
+    def load(
+        cls, path: _Path, *, blend_m: float | None = None, blend_shape: Literal["quintic", "arc", "parabola"] = "quintic"
+    ) -> Toolpath:
+        """A program in G-code, from a file; blends as in `gcode`.
 
         Raises MotionError as `gcode`, FileNotFoundError or another OSError if the file cannot be read.
         """

@@ -167,7 +167,9 @@ fn on_machine(options: &Options) -> Result<()> {
         makes: false,
     };
     let kind = options.compensation;
-    let compensation = results.compensation(kind, &file).wrap_err("--compensation")?;
+    let compensation = results
+        .compensation(kind, &file)
+        .wrap_err("--compensation")?;
     let networks = results.networks(kind, &file)?;
     let per_s = |feeds: &[f64]| feeds.iter().map(|feed| feed / 60.0).collect();
     let run = Run {

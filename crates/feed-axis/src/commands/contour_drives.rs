@@ -115,9 +115,7 @@ impl DriveCompensations {
     ///
     /// # Errors
     /// As [`DriveCompensations::of`].
-    pub fn new(
-        drives: Vec<(&'static StrategyKind, Predictors)>,
-    ) -> Result<Self, ContourError> {
+    pub fn new(drives: Vec<(&'static StrategyKind, Predictors)>) -> Result<Self, ContourError> {
         let mut names: Vec<&str> = drives.iter().map(|(kind, _)| kind.name).collect();
         names.dedup();
         let made = Self {

@@ -81,14 +81,10 @@ pub fn run(run: &Run<'_>) -> Result<MachineContoured, ContourError> {
     };
     let directions = at_feed(run, &run.wanted, correction.as_ref())?;
     let figures = match (run.path.radius(), &directions[..]) {
-        (Some(radius), [there, back]) => {
-            Some(circle_figures(radius, [&there.shown, &back.shown])?)
-        }
+        (Some(radius), [there, back]) => Some(circle_figures(radius, [&there.shown, &back.shown])?),
         _ => None,
     };
-    let feeds: Vec<FeedRow> = (run.feeds.par_iter())
-        .map(|&feed| feed_row(run, feed, correction.as_ref()))
-        .collect::<Result<_, _>>()?;
+    let feeds = in_order(&run.feeds, |&feed| feed_row(run, feed, correction.as_ref()))?;
     Ok(MachineContoured {
         machine: run.file.text.name.clone(),
         path: run.path.name(),
@@ -144,12 +140,10 @@ pub fn identify(run: &Run<'_>) -> Result<CirclesFound, ContourError> {
     let cases: Vec<(f64, Direction)> = (run.identify.iter())
         .flat_map(|&feed| run.path.senses().into_iter().map(move |d| (feed, d)))
         .collect();
-    let turns: Vec<Contoured> = (cases.par_iter())
-        .map(|&(feed, direction)| {
-            let wanted = Wanted { feed, ..run.wanted };
-            sense(run, (&wanted, 1), direction, None)
-        })
-        .collect::<Result<_, _>>()?;
+    let turns = in_order(&cases, |&(feed, direction)| {
+        let wanted = Wanted { feed, ..run.wanted };
+        sense(run, (&wanted, 1), direction, None)
+    })?;
     let points: Vec<Vec<[f64; 2]>> = (turns.iter())
         .map(|turn| turn.shown.at.iter().map(|at| at[0]).collect())
         .collect();
@@ -170,9 +164,18 @@ fn at_feed(
     wanted: &Wanted,
     correction: Option<&Coupling>,
 ) -> Result<Vec<Contoured>, ContourError> {
-    (run.path.senses().par_iter())
-        .map(|&direction| sense(run, (wanted, run.laps), direction, correction))
-        .collect()
+    in_order(&run.path.senses(), |&direction| {
+        sense(run, (wanted, run.laps), direction, correction)
+    })
+}
+
+/// What `one` makes of each item, on all threads; of several errors the first in the items' order.
+fn in_order<T: Sync, U: Send>(
+    items: &[T],
+    one: impl Fn(&T) -> Result<U, ContourError> + Sync,
+) -> Result<Vec<U>, ContourError> {
+    let all: Vec<Result<U, ContourError>> = items.par_iter().map(one).collect();
+    all.into_iter().collect()
 }
 
 fn feed_row(

@@ -2,15 +2,16 @@
 
 use std::path::{Path as FilePath, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::Deserialize;
 use toolpath::named::butterfly;
-use toolpath::{Nurbs, NurbsData, Path, PathTolerances, gcode};
+use toolpath::{Blend, Nurbs, NurbsData, Path, PathTolerances, gcode};
 
 use super::contour_results::RUNS;
 use super::contour_route::{AnyPath, PathChoice, Wanted};
 use crate::context::{from_toml, read_text};
+use crate::exit::wrong_use;
 
 /// Options that name another path than a circle.
 #[derive(Args)]
@@ -35,6 +36,24 @@ pub struct PathOptions {
         allow_negative_numbers = true
     )]
     rapid: f64,
+    /// Blend the corners between lines of a program within this distance of each, as after G64 P (mm); without, the feed stops at
+    /// corners until a G64 P of the program
+    #[arg(
+        long,
+        value_name = "MM",
+        requires = "program",
+        allow_negative_numbers = true
+    )]
+    blend: Option<f64>,
+    /// Shape of blends, of G64 too: quintic, whose curvature does not jump; arc or parabola, as LinuxCNC has them, at whose ends the feed
+    /// stops unless --acceleration-step allows a step
+    #[arg(
+        long,
+        value_name = "SHAPE",
+        default_value = "quintic",
+        requires = "program"
+    )]
+    blend_shape: Shape,
     /// Step of each axis' acceleration that is allowed where the curvature jumps, m/s²; with 0 the feed stops there
     #[arg(
         long,
@@ -79,6 +98,17 @@ impl LapOptions {
     }
 }
 
+/// Shapes of blends.
+#[derive(Clone, Copy, ValueEnum)]
+enum Shape {
+    /// A Bézier curve of degree 5
+    Quintic,
+    /// A circular arc
+    Arc,
+    /// A parabola
+    Parabola,
+}
+
 /// A NURBS file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -109,7 +139,7 @@ impl PathOptions {
     /// The path; a circle has `radius` (m) if no other path is named.
     pub fn choice(&self, radius: f64) -> Result<PathChoice> {
         if let Some(file) = &self.program {
-            return program(file);
+            return self.program_of(file);
         }
         if let Some(file) = &self.nurbs {
             return nurbs(file);
@@ -126,20 +156,33 @@ impl PathOptions {
             tilt: self.tilt.map(f64::to_radians),
         })
     }
-}
 
-fn program(file: &FilePath) -> Result<PathChoice> {
-    let shown = || format!("--program {}", file.display());
-    let text = read_text(file).wrap_err_with(shown)?;
-    let runs = gcode::read(&text, [0.0; 3], &PathTolerances::default());
-    let runs = runs.into_diagnostic().wrap_err_with(shown)?;
-    if runs.is_empty() {
-        return Err(miette!("no motion is in it; valid: G0 to G3 with X, Y, Z").wrap_err(shown()));
+    fn program_of(&self, file: &FilePath) -> Result<PathChoice> {
+        let shown = || format!("--program {}", file.display());
+        let text = read_text(file).wrap_err_with(shown)?;
+        let shape = match self.blend_shape {
+            Shape::Quintic => Blend::Quintic,
+            Shape::Arc => Blend::Arc,
+            Shape::Parabola => Blend::Parabola,
+        };
+        if let Some(mm) = self.blend.filter(|mm| !(1e-6..=1e3).contains(mm)) {
+            return Err(wrong_use(format!(
+                "--blend is {mm} mm; valid: from 1e-6 to 1000"
+            )));
+        }
+        let blending = (shape, self.blend.map(|mm| 1e-3 * mm));
+        let runs = gcode::read_blended(&text, [0.0; 3], &PathTolerances::default(), blending);
+        let runs = runs.into_diagnostic().wrap_err_with(shown)?;
+        if runs.is_empty() {
+            return Err(
+                miette!("no motion is in it; valid: G0 to G3 with X, Y, Z").wrap_err(shown())
+            );
+        }
+        Ok(PathChoice::Program {
+            name: format!("program {}", file.display()),
+            runs,
+        })
     }
-    Ok(PathChoice::Program {
-        name: format!("program {}", file.display()),
-        runs,
-    })
 }
 
 fn nurbs(file: &FilePath) -> Result<PathChoice> {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use toolpath::gcode::ProgramRun;
 use toolpath::named::{CirclePath, CircleTest, Direction};
-use toolpath::{FeedLimits, FeedProfile, Line, Path, PathSegment, ToolpathError};
+use toolpath::{FeedLimits, FeedProfile, Path, PathBlending, ToolpathError};
 
 /// Feed and limits of the axes, SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,6 +95,24 @@ pub enum Route {
 }
 
 impl PathChoice {
+    /// The same with the corners of its lines blended; a program is blended where it is read.
+    ///
+    /// # Errors
+    /// As [`Path::blended`].
+    pub fn blended(self, blending: &PathBlending) -> Result<Self, ToolpathError> {
+        Ok(match self {
+            Self::Whole { name, part, path } => Self::Whole {
+                name,
+                part,
+                path: match path {
+                    AnyPath::Flat(path) => AnyPath::Flat(path.blended(blending)?),
+                    AnyPath::Space(path) => AnyPath::Space(path.blended(blending)?),
+                },
+            },
+            other => other,
+        })
+    }
+
     /// Whether it is a circular test.
     pub fn is_circle(&self) -> bool {
         matches!(self, Self::Circle { .. })
@@ -147,7 +165,11 @@ impl PathChoice {
     /// # Errors
     /// As [`PathChoice::check`].
     pub fn positions(&self, count: usize) -> Result<(Vec<f64>, usize), ToolpathError> {
-        fn along<const D: usize>(paths: &[&Path<D>], (from, to): (f64, f64), count: usize) -> Vec<f64> {
+        fn along<const D: usize>(
+            paths: &[&Path<D>],
+            (from, to): (f64, f64),
+            count: usize,
+        ) -> Vec<f64> {
             let step = (to - from) / count.saturating_sub(1).max(1) as f64;
             let at = |k: usize| {
                 let mut s = from + step * k as f64;
@@ -302,7 +324,7 @@ fn program(runs: &[ProgramRun], wanted: &Wanted) -> Result<Route, ToolpathError>
         };
         runs.iter().zip(paths).map(one).collect()
     }
-    let flat: Option<Vec<Path<2>>> = runs.iter().map(|run| flattened(&run.path)).collect();
+    let flat: Option<Vec<Path<2>>> = runs.iter().map(|run| run.path.flattened()).collect();
     Ok(match flat {
         Some(paths) => Route::Flat(legs(runs, &paths, wanted)?),
         None => {
@@ -310,30 +332,4 @@ fn program(runs: &[ProgramRun], wanted: &Wanted) -> Result<Route, ToolpathError>
             Route::Space(legs(runs, &paths, wanted)?)
         }
     })
-}
-
-/// The same path in the plane; none if Z moves.
-fn flattened(path: &Path<3>) -> Option<Path<2>> {
-    let level = path.at(0.0).position[2];
-    let segment = |segment: &PathSegment<3>| -> Option<PathSegment<2>> {
-        let [x, y, _] = segment.at(0.0).position;
-        Some(match segment {
-            PathSegment::Line(line) => {
-                let [a, b, z] = line.to();
-                (z == level).then_some(())?;
-                Line::new([x, y], [a, b]).ok()?.into()
-            }
-            PathSegment::Arc(arc) => {
-                let [cx, cy, cz] = arc.centre();
-                let [tx, ty, tz] = arc.at(0.0).tangent;
-                (cz == level && tz == 0.0).then_some(())?;
-                toolpath::Arc::new([cx, cy], [x, y], [tx, ty], arc.sweep())
-                    .ok()?
-                    .into()
-            }
-            _ => return None,
-        })
-    };
-    let segments = path.segments().iter().map(segment).collect::<Option<_>>()?;
-    Path::new(segments).ok()
 }

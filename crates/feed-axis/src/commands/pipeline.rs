@@ -26,7 +26,11 @@ pub fn predictors(context: &Context, needs: &[Need]) -> Result<Predictors> {
     let stages: [(Need, Stage<'_>, Run); 3] = [
         (Need::Network, sample::stage(context), sample::run),
         (Need::Network, train::stage(context), train::run),
-        (Need::IdentifiedFriction, identify::stage(context), identify::run),
+        (
+            Need::IdentifiedFriction,
+            identify::stage(context),
+            identify::run,
+        ),
     ];
     for (need, stage, run) in &stages {
         // Friction and transfer functions come from one stage.

@@ -65,7 +65,12 @@ fn networks(found: &MachineContoured) -> Section {
     let mut table = Table::new(
         "Errors of the predicted position on samples that no training saw: network, and the best linear map of as many samples",
         [
-            "axis", "samples", "network, greatest", "mean", "linear map, greatest", "mean",
+            "axis",
+            "samples",
+            "network, greatest",
+            "mean",
+            "linear map, greatest",
+            "mean",
         ],
     );
     for one in &found.networks {
