@@ -48,6 +48,7 @@ mod laps;
 mod machine;
 mod motion;
 mod run;
+mod running;
 mod straightness;
 mod traced;
 
@@ -65,6 +66,7 @@ pub use laps::{DriveSensors, Laps, LearnedLap};
 pub use machine::{CoupledMachine, MachineDrive};
 pub use motion::AxisMotion;
 pub use run::{DriveLaw, Lap, MachineState};
+pub use running::{AxisGiven, RunningMachine};
 pub use straightness::Straightness;
 pub use traced::Traced;
 

@@ -65,7 +65,7 @@ def plot_contour(contour: Contour, ax: Axes | None) -> Axes:
             raise ImportError("plot needs matplotlib; install it: pip install matplotlib") from error
         ax = pyplot.figure().add_subplot(projection="polar")
     ax = _axes(ax)
-    is_polar = ax.name == "polar"
+    is_polar, worst = ax.name == "polar", 0.0
     for direction in contour:
         lap = contour[direction]
         if radius is None:
@@ -73,11 +73,14 @@ def plot_contour(contour: Contour, ax: Axes | None) -> Axes:
             continue
         order = np.argsort(lap["angle_rad"])
         angle, deviation = lap["angle_rad"][order], 1e6 * lap["deviation_m"][order]
-        ax.plot(angle if is_polar else np.degrees(angle), deviation, label=direction)
-    if radius is None:
-        ax.set_xlabel("arc length (mm)")
-    elif not is_polar:
-        ax.set_xlabel("angle (°)")
-    ax.set_ylabel("contour error (µm)" if radius is None else "radial deviation (µm)")
-    ax.legend()
+        worst = max(worst, float(np.abs(deviation).max()))
+        ax.plot(angle if is_polar else np.degrees(angle), deviation, label=direction, linewidth=0.8)
+    if is_polar:
+        # The nominal circle in the middle of the ring.
+        ax.set_ylim(-2.5 * worst, 1.2 * worst)
+        ax.set_title("radial deviation (µm)")
+    else:
+        ax.set_xlabel("arc length (mm)" if radius is None else "angle (°)")
+        ax.set_ylabel("contour error (µm)" if radius is None else "radial deviation (µm)")
+    ax.legend(loc="lower left")
     return ax

@@ -247,6 +247,9 @@ impl fmt::Display for MachineContoured {
                 )?;
             }
         }
+        if let Some(one) = self.directions.first() {
+            writeln!(f, "time of a lap {:.3} s", one.duration_s)?;
+        }
         if let Some(both) = &self.both {
             writeln!(
                 f,

@@ -174,7 +174,7 @@ fn in_order<T: Sync, U: Send>(
     items: &[T],
     one: impl Fn(&T) -> Result<U, ContourError> + Sync,
 ) -> Result<Vec<U>, ContourError> {
-    let all: Vec<Result<U, ContourError>> = items.par_iter().map(one).collect();
+    let all: Vec<Result<U, ContourError>> = items.par_iter().map(&one).collect();
     all.into_iter().collect()
 }
 

@@ -21,12 +21,10 @@
 mod arcs;
 mod words;
 
-use std::f64::consts::TAU;
-
 use crate::blending::blended;
 use crate::error::ToolpathError;
 use crate::vector::{norm, sub};
-use crate::{Arc, Blend, Line, Path, PathSegment, PathTolerances};
+use crate::{Blend, Line, Path, PathSegment, PathTolerances};
 use words::{Word, words};
 
 /// Why a program was refused.
