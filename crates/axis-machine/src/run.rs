@@ -109,7 +109,8 @@ impl<const D: usize> CoupledMachine<D> {
                 }
             }
             let before = self.speeds(state);
-            for (own, force) in state.loops.iter_mut().zip(self.forces(state)) {
+            let forces = self.forces(state);
+            for (own, force) in state.loops.iter_mut().zip(forces) {
                 force
                     .into_iter()
                     .for_each(|force| own.set_outer_load(force));

@@ -164,11 +164,6 @@ fn bases_and_beams_act() {
 fn a_drive_that_stops_is_named() {
     let stage = stage();
     let machine = Arc::new(CoupledMachine::new([&stage, &stage]).unwrap());
-    let refused = RunningMachine::begin(machine.clone(), [0.0, 9.0]).unwrap_err();
-    assert!(
-        refused.to_string().starts_with("axis 2 (from 1)"),
-        "{refused}"
-    );
     let mut running = RunningMachine::begin(machine, [0.0; 2]).unwrap();
     let mut far = [AxisGiven::default(); 2];
     far[1].reference.position = 5.0;
