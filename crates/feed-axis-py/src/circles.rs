@@ -105,11 +105,11 @@ type Turn<'py> = (f64, String, Bound<'py, PyAny>);
 
 /// Squareness and cross-talk of two axes from measured circles: feed, direction and points of each.
 #[pyfunction]
-#[pyo3(signature = (circles, *, radius, centre = (0.0, 0.0)))]
+#[pyo3(signature = (circles, *, radius, centre = None))]
 pub(crate) fn fit_circles(
     circles: Vec<Turn<'_>>,
     radius: &Bound<'_, PyAny>,
-    centre: (f64, f64),
+    centre: Option<(f64, f64)>,
 ) -> PyResult<PyCirclesFound> {
     let radii = line::<MotionError>(radius, "radius")?;
     if radii.len() != 1 && radii.len() != circles.len() {
@@ -130,6 +130,7 @@ pub(crate) fn fit_circles(
         }
         points.push(values.as_chunks::<2>().0.to_vec());
     }
+    let centre = centre.unwrap_or((0.0, 0.0));
     let mut measured = Vec::new();
     for (i, (feed, direction, _)) in circles.iter().enumerate() {
         let direction = match direction.as_str() {

@@ -4,9 +4,9 @@ use crate::{Blend, Line, Path, PathSegment, ToolpathError};
 
 /// How the corners of a path are blended.
 ///
-/// As in LinuxCNC under `G64 P`: the path comes no nearer than it must and passes each programmed corner within the tolerance; a blend takes
-/// at most half of each line, so that it may be smaller than the tolerance allows (LinuxCNC documentation, *G Codes*, section
-/// "G64 Path Blending", <https://linuxcnc.org/docs/html/gcode/g-code.html#gcode:g64>).
+/// As in LinuxCNC under `G64 P`, the path passes each programmed corner within the tolerance (LinuxCNC documentation, *G Codes*, section
+/// "G64 Path Blending", <https://linuxcnc.org/docs/html/gcode/g-code.html#gcode:g64>). A blend takes at most half of each line, so that it
+/// may be smaller than the tolerance allows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathBlending {
     /// Greatest distance of the path from a corner, m.

@@ -807,10 +807,11 @@ def fit_circles(
     circles: Sequence[tuple[float, Literal["clockwise", "counterclockwise"], ArrayLike]],
     *,
     radius: ArrayLike,
-    centre: tuple[float, float] = (0.0, 0.0),
+    centre: tuple[float, float] | None = None,
 ) -> CirclesFound:
     """Squareness and cross-talk of two axes from measured circles, as of a ball bar or a grid encoder: feed (m/s), direction and points (m, in rows
-    of x and y, evenly over the turn) of each. `radius` is the nominal one (m), or one for each circle.
+    of x and y, evenly over the turn) of each. `radius` is the nominal one (m), or one for each circle; `centre` the
+    nominal one (m), the origin if left out.
 
     Raises SearchError if the circles do not tell them apart, as at one feed.
 

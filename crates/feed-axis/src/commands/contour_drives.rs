@@ -20,8 +20,8 @@ pub enum ContourError {
     File(MachineFileError),
     /// A compensation that an axis cannot have.
     Strategy {
-        /// Which axis, from 1.
-        axis: usize,
+        /// Which drive, from 1; a gantry's second stands behind its first.
+        drive: usize,
         /// Why.
         source: PipelineError,
     },
@@ -53,7 +53,7 @@ impl fmt::Display for ContourError {
             Self::Path(source) => source.fmt(f),
             Self::Machine(source) => source.fmt(f),
             Self::File(source) => source.fmt(f),
-            Self::Strategy { axis, source } => write!(f, "axis {axis} (from 1): {source}"),
+            Self::Strategy { drive, source } => write!(f, "drive {drive} (from 1): {source}"),
             Self::Circles(source) => source.fmt(f),
             Self::Dimensions {
                 machine,
@@ -140,9 +140,9 @@ impl DriveCompensations {
         let drives = self.drives[..count].iter().enumerate();
         drives
             .map(|(d, (kind, predictors))| {
-                let axis = d + 1;
+                let drive = d + 1;
                 let made = kind.strategy(predictors);
-                made.map_err(|source| ContourError::Strategy { axis, source })
+                made.map_err(|source| ContourError::Strategy { drive, source })
             })
             .collect()
     }

@@ -213,6 +213,39 @@ impl MachineContoured {
     }
 }
 
+impl MachineContoured {
+    /// Corners, curves and reversals of the last lap.
+    fn write_places(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for one in &self.directions {
+            for (name, all) in [("corner", &one.corners), ("curve", &one.curves)] {
+                for place in all {
+                    writeln!(
+                        f,
+                        "{name} at {:.3} mm, {}: {:.3} µm",
+                        place.s_mm,
+                        place.shape(),
+                        place.error_um
+                    )?;
+                }
+            }
+            let peaks = one
+                .reversals
+                .iter()
+                .map(|r| format!("{} at {:.0}°: {:.3} µm", r.axis, r.angle_deg, r.peak_um));
+            let peaks: Vec<String> = peaks.collect();
+            if !peaks.is_empty() {
+                writeln!(
+                    f,
+                    "after a reversal, {}: {}",
+                    one.direction,
+                    peaks.join("; ")
+                )?;
+            }
+        }
+        Ok(())
+    }
+}
+
 impl fmt::Display for MachineContoured {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.title())?;
@@ -257,32 +290,7 @@ impl fmt::Display for MachineContoured {
                 both.g_um, both.h_um, both.d_um
             )?;
         }
-        for one in &self.directions {
-            for (name, all) in [("corner", &one.corners), ("curve", &one.curves)] {
-                for place in all {
-                    writeln!(
-                        f,
-                        "{name} at {:.3} mm, {}: {:.3} µm",
-                        place.s_mm,
-                        place.shape(),
-                        place.error_um
-                    )?;
-                }
-            }
-            let peaks = one
-                .reversals
-                .iter()
-                .map(|r| format!("{} at {:.0}°: {:.3} µm", r.axis, r.angle_deg, r.peak_um));
-            let peaks: Vec<String> = peaks.collect();
-            if !peaks.is_empty() {
-                writeln!(
-                    f,
-                    "after a reversal, {}: {}",
-                    one.direction,
-                    peaks.join("; ")
-                )?;
-            }
-        }
+        self.write_places(f)?;
         for row in &self.feeds {
             writeln!(
                 f,
