@@ -35,17 +35,47 @@ fn compare(a: &str, b: &str) {
     });
 }
 
+/// Two axes with the network of each, from the folder of results.
+fn on_a_circle(runs: &str) {
+    let axis = "data/axes/liu2025.toml";
+    let circle = ["contour", "--x", axis, "--y", axis, "--radius", "5"];
+    let found = |more: &[&str]| -> Value {
+        let output = run(&[&circle[..], &["--laps", "2", "--format", "json"], more].concat());
+        assert!(output.status.success(), "{output:?}");
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let network = ["--compensation", "network", "--runs", runs];
+    let under = found(&[&network[..], &["--quick"]].concat());
+    let none = found(&[]);
+    let error = |found: &Value| {
+        found["directions"][0]["laps"][1]["contour_error_um"]
+            .as_f64()
+            .unwrap()
+    };
+    assert!(error(&under) < 0.8 * error(&none), "{under} {none}");
+    let rows = under["networks"].as_array().unwrap();
+    assert_eq!((rows.len(), &rows[1]["axis"]), (2, &Value::from("Y")));
+    assert!(rows[0]["unseen_um"][0].as_f64() < rows[0]["linear_um"][0].as_f64());
+    // Those of another size are not taken.
+    let message = refuse(&[&circle[..], &network].concat());
+    assert!(
+        message.contains("the trained network of liu2025") && message.contains("--quick"),
+        "{message}"
+    );
+}
+
 /// The whole pipeline, small: its figures against the project's targets, a
 /// second run that does nothing, another number of threads with the same
 /// figures, and damaged or foreign results refused.
 #[test]
 fn the_quick_pipeline_meets_its_figures_and_guards_its_results() {
     let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("run");
+    let out = folder.path().join("liu2025");
     let out = out.to_str().unwrap();
     succeed(&["pipeline", "--quick", "--out", out]);
     let summary = read(out);
     check_figures(&summary);
+    on_a_circle(folder.path().to_str().unwrap());
     let page = std::fs::read_to_string(format!("{out}/report.html")).unwrap();
     assert!(page.len() > 100_000 && !page.contains("NaN"));
     assert!(page.contains("Margins of each case"));
