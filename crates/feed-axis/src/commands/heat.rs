@@ -14,6 +14,7 @@ use trajectories::{Motion, Program, Step};
 use super::heat_time::time;
 use super::heat_words::{Heated, HeatedNode, HeatedPlace};
 use super::motions::{listed, program_on};
+use super::{heat_fit, heat_predict, heat_slow};
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
 use crate::exit::wrong_use;
 use crate::out_file;
@@ -68,6 +69,8 @@ pub struct Options {
     /// Where the losses come from
     #[arg(long, value_enum, default_value_t = LossesFrom::Reference)]
     losses: LossesFrom,
+    #[command(flatten)]
+    slow: heat_slow::Options,
     /// Where to write a page: temperatures, growth and losses over time
     #[arg(long, value_name = "OUT.html", value_parser = out_file::page())]
     report: Option<PathBuf>,
@@ -88,6 +91,9 @@ const INTERVALS: u32 = 240;
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
     let axis = options.axis()?;
+    if options.slow.is_asked() {
+        return options.slow_logs(&axis);
+    }
     let motion = options.motion(&axis)?;
     let places = options.places(&axis)?;
     let model = axis.thermal_model().into_diagnostic()?;
@@ -100,6 +106,32 @@ pub fn command(options: &Options) -> Result<()> {
 }
 
 impl Options {
+    /// Fits or predicts logs of hours.
+    fn slow_logs(&self, axis: &Axis) -> Result<()> {
+        let duties = self.slow.programs(axis, || self.motion(axis))?;
+        match &self.slow.predict {
+            Some(file) => {
+                let given = heat_predict::Given {
+                    axis,
+                    duties: &duties,
+                    air: self.air,
+                    places: self.places(axis)?,
+                };
+                heat_predict::command(&given, &self.slow, file)
+            }
+            None => {
+                let given = heat_fit::Given {
+                    axis,
+                    file: &self.axis,
+                    set: &self.set,
+                    duties: &duties,
+                    air: self.air,
+                };
+                heat_fit::command(&given, &self.slow)
+            }
+        }
+    }
+
     fn axis(&self) -> Result<Axis> {
         if self.set.is_empty() {
             return read_axis(&self.axis);

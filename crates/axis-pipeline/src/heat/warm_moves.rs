@@ -1,0 +1,213 @@
+//! Moves that are made again after minutes of a duty: the machine warms up, and so does the model.
+//!
+//! ```text
+//! machine   duty ─► heat of the machine ─► friction of its loop, growth of its table ─┐
+//! model     duty ─► heat of the axis file ─► growth off the reference, friction ──► plan ─► moves
+//! ```
+//!
+//! Growth is added to the simulated loop by superposition: what it does to lead and compliance is one part in 10⁴.
+
+use std::sync::Arc;
+
+use axis_sim::thermal::LossModel;
+use axis_sim::{Axis, ClosedLoop, Measured};
+use axis_thermal::{Duty, ThermalModel, ThermalState};
+use trajectories::Motion;
+
+use super::ahead::Unseen;
+use super::{HeatAhead, HeatError};
+use crate::PipelineError;
+use crate::moves::{MoveRun, Moves, NamedMotion};
+use crate::strategies::{SharedMotion, Strategy};
+
+/// What warms up under a duty that repeats itself.
+pub trait Warmth {
+    /// Goes on until so many seconds since the begin.
+    ///
+    /// # Errors
+    /// [`HeatError`] if the heat does not settle.
+    fn until(&mut self, time: f64) -> Result<(), HeatError>;
+
+    /// Dry and viscous friction now, as multiples of the cold axis'.
+    fn friction(&self) -> [f64; 2];
+
+    /// By how far the table at the position `x` (m) is from where the controller's measuring has it, m.
+    fn growth(&self, x: f64) -> f64;
+}
+
+/// The heat of an axis as its file has it, homed cold.
+#[derive(Clone)]
+pub struct ModelHeat {
+    axis: Axis,
+    model: ThermalModel,
+    losses: LossModel,
+    unseen: Unseen,
+    duty: Duty,
+    air: f64,
+    homed: ThermalState,
+    now: ThermalState,
+}
+
+impl ModelHeat {
+    /// Under a duty of motions one after the other, in air of a constant temperature (°C) that all begins at.
+    ///
+    /// # Errors
+    /// [`HeatError`] if the numbers of `[thermal]` contradict each other.
+    pub fn new(axis: &Axis, duty: &[SharedMotion], air: f64) -> Result<Self, HeatError> {
+        Self::of(axis, axis.thermal_model()?, duty, air)
+    }
+
+    /// The same with another thermal model in the place of the file's.
+    ///
+    /// # Errors
+    /// [`HeatError`] if the axis' effects leave no valid friction.
+    pub fn of(
+        axis: &Axis,
+        model: ThermalModel,
+        duty: &[SharedMotion],
+        air: f64,
+    ) -> Result<Self, HeatError> {
+        let losses = LossModel::of(axis)?;
+        let mut all = model.duty();
+        for motion in duty {
+            losses.add_motion(&mut all, axis, &**motion);
+        }
+        let state = model.at_rest(air);
+        Ok(Self {
+            duty: all,
+            losses,
+            unseen: Unseen::of(axis)?,
+            axis: axis.clone(),
+            air,
+            homed: state.clone(),
+            now: state,
+            model,
+        })
+    }
+
+    /// What is ahead of a motion that begins now.
+    ///
+    /// # Errors
+    /// [`HeatError`] if the motion leaves the screw, or the heat does not settle.
+    pub fn ahead(&self, motion: &dyn Motion) -> Result<HeatAhead, HeatError> {
+        let axis = (&self.axis, &self.losses);
+        HeatAhead::along(
+            axis,
+            &self.model,
+            [&self.homed, &self.now],
+            self.air,
+            motion,
+        )
+    }
+}
+
+impl Warmth for ModelHeat {
+    fn until(&mut self, time: f64) -> Result<(), HeatError> {
+        let more = time - self.now.time;
+        if more > 0.0 {
+            let at_work = self.model.under(&self.duty)?;
+            at_work.run(&mut self.now, self.air, more)?;
+        }
+        Ok(())
+    }
+
+    fn friction(&self) -> [f64; 2] {
+        let at_work = self.model.under(&self.duty);
+        at_work.map_or([1.0; 2], |at_work| at_work.friction_factors(&self.now))
+    }
+
+    fn growth(&self, x: f64) -> f64 {
+        self.unseen
+            .read(&self.model.growth(&self.homed, &self.now, x))
+    }
+}
+
+/// The axis with its dry and viscous friction times these factors.
+///
+/// # Errors
+/// [`PipelineError`] if they leave no valid friction.
+pub fn warm_axis(axis: &Axis, [dry, viscous]: [f64; 2]) -> Result<Axis, PipelineError> {
+    let mut axis = axis.clone();
+    let changed = axis.friction.change(|values| {
+        for key in ["coulomb", "stiction"] {
+            values.scale(key, dry);
+        }
+        values.scale("viscous", viscous);
+    });
+    changed.map_err(axis_sim::SetupError::from)?;
+    Ok(axis)
+}
+
+/// Moves after minutes of a duty.
+pub struct WarmMoves {
+    /// Seconds of the duty before each pass, rising.
+    after: Vec<f64>,
+    loops: Vec<ClosedLoop>,
+    /// Growth of the machine's table at even positions, at each time.
+    grown: Vec<HeatAhead>,
+}
+
+impl WarmMoves {
+    /// Warms a machine up: what of it is as its file has it, and how warm it is after each of `after` (s, rising).
+    ///
+    /// # Errors
+    /// [`PipelineError`] if its heat does not settle or its friction vanishes.
+    pub fn new(
+        machine: &Axis,
+        warmth: &mut dyn Warmth,
+        after: &[f64],
+    ) -> Result<Self, PipelineError> {
+        let mut warm = Self {
+            after: after.to_vec(),
+            loops: Vec::new(),
+            grown: Vec::new(),
+        };
+        for time in after {
+            warmth.until(*time)?;
+            let friction = warmth.friction();
+            warm.loops
+                .push(ClosedLoop::new(&warm_axis(machine, friction)?)?);
+            let grown = HeatAhead::constant(machine, |x| warmth.growth(x), friction);
+            warm.grown.push(grown);
+        }
+        Ok(warm)
+    }
+
+    /// Makes the moves at each time under a strategy, which predicts heat by `model` or not at all. The axis is
+    /// homed cold, before the first, and its state goes on from time to time.
+    ///
+    /// # Errors
+    /// As [`Moves::make`], and if the model's heat does not settle.
+    pub fn run(
+        &self,
+        strategy: &mut dyn Strategy,
+        moves: &[NamedMotion],
+        mut model: Option<ModelHeat>,
+        sense: impl FnMut(&mut Measured),
+        each: impl Fn(),
+    ) -> Result<Vec<Vec<MoveRun>>, PipelineError> {
+        let Some(first) = self.loops.first() else {
+            return Ok(Vec::new());
+        };
+        let mut rig = Moves::new(first, sense);
+        let mut all = Vec::new();
+        for ((time, closed_loop), grown) in self.after.iter().zip(&self.loops).zip(&self.grown) {
+            if let Some(model) = &mut model {
+                model.until(*time)?;
+            }
+            let mut pass = Vec::new();
+            for planned in moves {
+                let heat = match &model {
+                    Some(model) => Some(Arc::new(model.ahead(&*planned.motion)?)),
+                    None => None,
+                };
+                let off = Box::new(|x: f64| grown.growth(0.0, x)[0]);
+                rig.warmed(closed_loop, off, heat);
+                pass.push(rig.make(strategy, planned)?);
+                each();
+            }
+            all.push(pass);
+        }
+        Ok(all)
+    }
+}
