@@ -76,6 +76,7 @@ fn a_log_of_probings_makes_a_model_that_predicts_its_held_out_part() {
     );
     let log = probed(&[(Some(&a), 1.0, 10), (Some(&b), 2.0, 6), (Some(&a), 1.0, 5)]);
     let duties = [program(0.45, 0.95, 0.2), program(0.1, 1.4, 0.15)];
+    let duties = duties.map(|program| Arc::new(program) as SharedMotion);
     let options = SlowLogOptions {
         duties: &duties,
         ..SlowLogOptions::default()

@@ -37,6 +37,7 @@ mod discover;
 mod discovery;
 mod errors;
 mod export;
+mod heat;
 mod html;
 mod identify;
 mod learn;

@@ -19,7 +19,7 @@ use thiserror::Error;
 pub use ahead::HeatAhead;
 pub use follow::{FollowOptions, FollowedRow, Following, follow};
 pub use identify::{HeatFit, HeldOut, fit};
-pub use slow_log::{SlowLog, SlowLogOptions};
+pub use slow_log::{SlowLog, SlowLogOptions, probe_of, zero_of};
 pub use warm_moves::{ModelHeat, WarmMoves, Warmth, warm_axis};
 
 /// Why a slow log or its model was refused.

@@ -19,11 +19,12 @@ use axis_sim::thermal::LossModel;
 use axis_thermal::{
     Duty, DutySample, GrowthLog, GrowthOf, GrowthStretch, GrowthZero, ThermalModel,
 };
-use trajectories::{Program, Setpoint};
+use trajectories::Setpoint;
 
 use super::HeatError;
 use super::channels::{CURRENT, LENGTH, NUMBER, POWER, SPEED, TEMPERATURE, TORQUE, channel};
 use super::readings::{self, Reading};
+use crate::strategies::SharedMotion;
 
 /// Longest sampling interval of a reference, s: beyond it speeds are not known.
 const LONGEST_INTERVAL: f64 = 0.5;
@@ -32,7 +33,7 @@ const LONGEST_INTERVAL: f64 = 0.5;
 #[derive(Clone, Debug)]
 pub struct SlowLogOptions<'a> {
     /// The duties that `duty_1` counts from 1; each repeats itself.
-    pub duties: &'a [Program],
+    pub duties: &'a [SharedMotion],
     /// Temperature of the air if the log has none, °C.
     pub air: f64,
     /// Longest stretch of a reference, s; growth by encoder and scale is read at the end of each.
@@ -56,10 +57,40 @@ impl Default for SlowLogOptions<'_> {
     }
 }
 
+/// What a probe reads growth against, by its name.
+///
+/// # Errors
+/// [`HeatError::Log`] names those that there are.
+pub fn probe_of(name: &str) -> Result<GrowthOf, HeatError> {
+    match name {
+        "bearing" => Ok(GrowthOf::Screw),
+        "bed" => Ok(GrowthOf::ScrewLessBed),
+        other => Err(HeatError::log(
+            format!("is said to be probed against \"{other}\""),
+            "\"bearing\" (the bed at the front bearing) or \"bed\" (at the same position)",
+        )),
+    }
+}
+
+/// What readings of a probe count from, by its name.
+///
+/// # Errors
+/// [`HeatError::Log`] names those that there are.
+pub fn zero_of(name: &str) -> Result<GrowthZero, HeatError> {
+    match name {
+        "begin" => Ok(GrowthZero::Begin),
+        "first" => Ok(GrowthZero::FirstAtPlace),
+        other => Err(HeatError::log(
+            format!("is said to count from \"{other}\""),
+            "\"begin\" (of the log) or \"first\" (reading at each position)",
+        )),
+    }
+}
+
 /// What moves the axis.
 enum Source<'a> {
     Duties {
-        programs: &'a [Program],
+        programs: &'a [SharedMotion],
         number: Vec<f64>,
     },
     Reference {
@@ -181,7 +212,7 @@ impl<'a> SlowLog<'a> {
             Source::Duties { programs, number } => {
                 let number = number[to] as usize;
                 match number.checked_sub(1).and_then(|i| programs.get(i)) {
-                    Some(program) => self.losses.add_motion(&mut duty, self.axis, program),
+                    Some(program) => self.losses.add_motion(&mut duty, self.axis, &**program),
                     None => self.standstill(&mut duty, model),
                 }
             }

@@ -4,10 +4,10 @@ use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 
 use axis_pipeline::heat::{HeatFit, HeldOut, SlowLog, fit};
+use axis_pipeline::strategies::SharedMotion;
 use axis_sim::{Axis, SixDigits};
 use miette::{IntoDiagnostic, Result};
 use serde::Serialize;
-use trajectories::Program;
 
 use super::discover::moved;
 use super::heat_slow::{Options, of_log, slow_log};
@@ -21,7 +21,7 @@ pub(super) struct Given<'a> {
     pub axis: &'a Axis,
     pub file: &'a Path,
     pub set: &'a [SetKey],
-    pub duties: &'a [Program],
+    pub duties: &'a [SharedMotion],
     pub air: f64,
 }
 
@@ -40,7 +40,9 @@ pub(super) fn command(given: &Given<'_>, options: &Options) -> Result<()> {
     });
     let slow: Vec<SlowLog<'_>> = slow.collect::<Result<_>>()?;
     let found = fit(given.axis, &slow, held_out).into_diagnostic()?;
-    let fitted = Fitted::of(given.axis, options, &found);
+    let names = options.fit.iter().map(|log| log.display().to_string());
+    let mut fitted = Fitted::of(given.axis, names.collect(), options.held_out, &found);
+    fitted.axis_file = options.out.clone();
     if let Some(out) = &options.out {
         write(given, &fitted, out)?;
     }
@@ -96,9 +98,9 @@ impl Errors {
 
 /// What was fitted, and how well.
 #[derive(Serialize)]
-struct Fitted {
+pub struct Fitted {
     axis: String,
-    logs: Vec<PathBuf>,
+    logs: Vec<String>,
     hours: f64,
     readings: usize,
     friction_readings: usize,
@@ -115,7 +117,14 @@ struct Fitted {
 }
 
 impl Fitted {
-    fn of(axis: &Axis, options: &Options, found: &HeatFit) -> Self {
+    /// The keys of `[thermal]` that were fitted, with their values.
+    pub fn keys(&self) -> impl Iterator<Item = (&str, f64)> {
+        let numbers = self.numbers.iter();
+        numbers.map(|number| (number.key.as_str(), number.fitted))
+    }
+
+    /// Of a fit to logs of these names, so many percent of each held out.
+    pub fn of(axis: &Axis, logs: Vec<String>, held_out_percent: f64, found: &HeatFit) -> Self {
         let own = axis.thermal_keys();
         let number = |(key, fitted): (String, f64)| Number {
             assumed: own.iter().find(|(name, _)| *name == key).map(|(_, v)| *v),
@@ -125,18 +134,18 @@ impl Fitted {
         let numbers = axis.thermal_keys_of(&found.fitted.parameters);
         Self {
             axis: axis.name.clone(),
-            logs: options.fit.clone(),
+            logs,
             hours: found.duration / 3600.0,
             readings: found.readings,
             friction_readings: found.friction_readings,
             fitted_rms_um: 1e6 * found.fitted.rms,
-            held_out_percent: options.held_out,
+            held_out_percent,
             held_out_readings: found.after.readings,
             held_out_growth_um: 1e6 * found.after.of,
             assumed_numbers: Errors::of(&found.before),
             fitted_numbers: Errors::of(&found.after),
             numbers: numbers.into_iter().map(number).collect(),
-            axis_file: options.out.clone(),
+            axis_file: None,
         }
     }
 
@@ -151,18 +160,13 @@ impl Fitted {
     }
 
     fn summary(&self) -> Vec<String> {
-        let logs: Vec<String> = self
-            .logs
-            .iter()
-            .map(|log| log.display().to_string())
-            .collect();
         let friction = match self.friction_readings {
             0 => String::new(),
             n => format!(" and {n} of the friction's power"),
         };
         let mut lines = vec![format!(
             "{}: fitted to {:.2} h, {} readings of growth{friction}; RMS of model less log {:.2} µm.",
-            logs.join(", "),
+            self.logs.join(", "),
             self.hours,
             self.readings,
             self.fitted_rms_um

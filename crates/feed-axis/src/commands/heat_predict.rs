@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use axis_log::{Channel, Log};
 use axis_pipeline::heat::{FollowOptions, Following, SlowLog, follow};
+use axis_pipeline::strategies::SharedMotion;
 use axis_sim::{Axis, SixDigits};
 use miette::{IntoDiagnostic, Result};
 use serde::Serialize;
-use trajectories::Program;
 
 use super::heat_slow::{Options, of_log, slow_log};
 use crate::output::print;
@@ -19,7 +19,7 @@ const WINDOW: f64 = 60.0;
 /// What the command is about.
 pub(super) struct Given<'a> {
     pub axis: &'a Axis,
-    pub duties: &'a [Program],
+    pub duties: &'a [SharedMotion],
     pub air: f64,
     /// m.
     pub places: Vec<f64>,
@@ -45,7 +45,10 @@ pub(super) fn command(given: &Given<'_>, options: &Options, file: &Path) -> Resu
         let channels = channels(&log, &slow, &found, &given.places)?;
         axis_log::write(out, &channels).into_diagnostic()?;
     }
-    print("heat", &Predicted::of(given, options, file, &found))
+    let name = file.display().to_string();
+    let mut predicted = Predicted::of(given.axis, name, &how, &found);
+    predicted.file = options.out.clone();
+    print("heat", &predicted)
 }
 
 /// The log that is written: growth at each position, and the reference less growth.
@@ -77,9 +80,9 @@ fn channels(log: &Log, slow: &SlowLog<'_>, found: &Following, places: &[f64]) ->
 
 /// How well the readings were predicted.
 #[derive(Serialize)]
-struct Predicted {
+pub struct Predicted {
     axis: String,
-    log: PathBuf,
+    log: String,
     hours: f64,
     homed_s: f64,
     /// Readings that the prediction was compared with.
@@ -99,28 +102,29 @@ struct Predicted {
 }
 
 impl Predicted {
-    fn of(given: &Given<'_>, options: &Options, file: &Path, found: &Following) -> Self {
+    /// Of a log of that name.
+    pub fn of(axis: &Axis, log: String, how: &FollowOptions, found: &Following) -> Self {
         let errors: Vec<f64> = found.readings.iter().map(|[_, read, p]| p - read).collect();
         let is_read = !errors.is_empty();
         let greatest = |of: &mut dyn Iterator<Item = f64>| of.map(f64::abs).fold(0.0, f64::max);
         let squares: f64 = errors.iter().map(|e| e * e).sum();
         let last = found.rows.last();
         Self {
-            axis: given.axis.name.clone(),
-            log: file.to_owned(),
+            axis: axis.name.clone(),
+            log,
             hours: last.map_or(0.0, |row| row.time / 3600.0),
-            homed_s: options.homed.unwrap_or(0.0),
+            homed_s: how.homed,
             readings: errors.len(),
             greatest_um: is_read.then(|| 1e6 * greatest(&mut errors.iter().copied())),
             rms_um: is_read.then(|| 1e6 * (squares / errors.len() as f64).sqrt()),
             growth_um: is_read.then(|| 1e6 * greatest(&mut found.readings.iter().map(|r| r[1]))),
             probings: found.probings,
-            positions_mm: given.places.iter().map(|x| 1e3 * x).collect(),
+            positions_mm: how.places.iter().map(|x| 1e3 * x).collect(),
             growth_at_end_um: last.map_or(Vec::new(), |row| {
                 row.growth.iter().map(|growth| 1e6 * growth).collect()
             }),
             friction_at_end: last.map_or([1.0; 2], |row| row.friction),
-            file: options.out.clone(),
+            file: None,
         }
     }
 }
@@ -131,7 +135,7 @@ impl fmt::Display for Predicted {
             f,
             "{}: growth along {}, {:.2} h, from its reference alone, since {} s",
             self.axis,
-            self.log.display(),
+            self.log,
             self.hours,
             SixDigits(self.homed_s)
         )?;

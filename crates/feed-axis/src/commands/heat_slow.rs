@@ -1,9 +1,11 @@
 //! `heat --fit`, `heat --predict`: slow logs, and the thermal model that they are fitted or predicted by.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use axis_log::{Log, read_log};
 use axis_pipeline::heat::SlowLogOptions;
+use axis_pipeline::strategies::SharedMotion;
 use axis_sim::{Axis, SixDigits};
 use axis_thermal::{GrowthOf, GrowthZero};
 use clap::{Args, ValueEnum};
@@ -88,17 +90,18 @@ impl Options {
         &self,
         axis: &Axis,
         own: impl FnOnce() -> Result<Program>,
-    ) -> Result<Vec<Program>> {
-        let read = |file: &PathBuf| super::heat::repeated(file, axis);
+    ) -> Result<Vec<SharedMotion>> {
+        let shared = |program| Arc::new(program) as SharedMotion;
+        let read = |file: &PathBuf| super::heat::repeated(file, axis).map(shared);
         match self.duties.is_empty() {
             // An axis file without a trajectory may have logs with a reference.
-            true => Ok(own().into_iter().collect()),
+            true => Ok(own().into_iter().map(shared).collect()),
             false => self.duties.iter().map(read).collect(),
         }
     }
 
     /// How logs are read.
-    pub(super) fn reading<'a>(&self, duties: &'a [Program], air: f64) -> SlowLogOptions<'a> {
+    pub(super) fn reading<'a>(&self, duties: &'a [SharedMotion], air: f64) -> SlowLogOptions<'a> {
         SlowLogOptions {
             duties,
             air,
