@@ -68,6 +68,11 @@ fn reading<'a>(
     })
 }
 
+/// What a command refused, in its words.
+fn refused(why: impl std::fmt::Display) -> PyErr {
+    SimulationError::new_err(why.to_string())
+}
+
 #[pymethods]
 impl PyAxis {
     /// Hours of a duty: temperatures, growth, friction and losses over time.
@@ -108,16 +113,15 @@ impl PyAxis {
         };
         let axis = self.axis.clone();
         let heated = long(py, None, move |_| {
-            let words = |error: miette::Report| SimulationError::new_err(format!("{error:?}"));
             let run = HeatRun {
                 motion: &*motion,
                 name: "a motion without end".to_owned(),
                 duration: duration_s,
                 air: air_degc,
-                places: places(&axis, &at).map_err(words)?,
+                places: places(&axis, &at).map_err(refused)?,
                 is_simulated,
             };
-            run.on(&axis).map_err(words)
+            run.on(&axis).map_err(refused)
         })?;
         plain(py, &heated)
     }

@@ -30,7 +30,7 @@ use crate::strategies::SharedMotion;
 const LONGEST_INTERVAL: f64 = 0.5;
 
 /// How a log is read.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct SlowLogOptions<'a> {
     /// The duties that `duty_1` counts from 1; each repeats itself.
     pub duties: &'a [SharedMotion],
