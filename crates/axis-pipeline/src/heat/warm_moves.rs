@@ -12,13 +12,16 @@ use std::sync::Arc;
 use axis_sim::thermal::LossModel;
 use axis_sim::{Axis, ClosedLoop, Measured};
 use axis_thermal::{Duty, ThermalModel, ThermalState};
-use trajectories::Motion;
+use trajectories::{Motion, Program, Step};
 
 use super::ahead::Unseen;
 use super::{HeatAhead, HeatError};
 use crate::PipelineError;
 use crate::moves::{MoveRun, Moves, NamedMotion};
 use crate::strategies::{SharedMotion, Strategy};
+
+/// Time in which a drive has come to where it is led, s.
+const SETTLED: f64 = 1.0;
 
 /// What warms up under a duty that repeats itself.
 pub trait Warmth {
@@ -195,19 +198,42 @@ impl WarmMoves {
             if let Some(model) = &mut model {
                 model.until(*time)?;
             }
+            let ahead = |planned: &NamedMotion| -> Result<_, PipelineError> {
+                let ahead = model.as_ref().map(|model| model.ahead(&*planned.motion));
+                Ok(ahead.transpose()?.map(Arc::new))
+            };
+            let mut make = |planned: &NamedMotion, counts: bool| {
+                let off = Box::new(|x: f64| grown.growth(0.0, x)[0]);
+                rig.warmed(closed_loop, off, ahead(planned)?);
+                match counts {
+                    true => rig.make(strategy, planned),
+                    false => rig.try_out(strategy, planned),
+                }
+            };
+            // In the minutes before, the drive has followed the growth: it stands where it is led to.
+            if let Some(first) = moves.first().filter(|_| *time > 0.0) {
+                make(&standstill(first)?, false)?;
+            }
             let mut pass = Vec::new();
             for planned in moves {
-                let heat = match &model {
-                    Some(model) => Some(Arc::new(model.ahead(&*planned.motion)?)),
-                    None => None,
-                };
-                let off = Box::new(|x: f64| grown.growth(0.0, x)[0]);
-                rig.warmed(closed_loop, off, heat);
-                pass.push(rig.make(strategy, planned)?);
+                pass.push(make(planned, true)?);
                 each();
             }
             all.push(pass);
         }
         Ok(all)
     }
+}
+
+/// A standstill where a move begins.
+fn standstill(before: &NamedMotion) -> Result<NamedMotion, PipelineError> {
+    let begin = before.motion.at(0.0).position;
+    let rest = Step::Dwell { duration: SETTLED };
+    let program = Program::new(begin, vec![rest]);
+    let program = program.map_err(|source| PipelineError::Trajectory { index: 0, source })?;
+    Ok(NamedMotion {
+        name: format!("standstill before {}", before.name),
+        motion: Arc::new(program),
+        learned: None,
+    })
 }
