@@ -43,8 +43,9 @@ pub struct Moves<'a, S> {
     grown: Option<Growth<'a>>,
 }
 
-/// By how far the table is from where the controller's measuring has it, over the position, m.
-pub type Growth<'a> = Box<dyn Fn(f64) -> f64 + 'a>;
+/// By how far the table is from where the controller's measuring has it, m, over the time since the move's begin (s) and
+/// the position.
+pub type Growth<'a> = Box<dyn Fn(f64, f64) -> f64 + 'a>;
 
 /// How the last move has left the axis.
 struct Left {
@@ -69,13 +70,17 @@ impl<'a, S: FnMut(&mut Measured)> Moves<'a, S> {
     }
 
     /// Goes on with an axis that has warmed up: its loop, by how far its table is off by growth, and what the
-    /// strategy predicts of both. It stays as the last move has left it, homed where it was.
+    /// strategy predicts of both. On another loop the axis is settled anew, relaxed and homed where it stands, as
+    /// a state holds the friction that it was made with.
     pub fn warmed(
         &mut self,
         closed_loop: &'a ClosedLoop,
         grown: Growth<'a>,
         heat: Option<Arc<HeatAhead>>,
     ) {
+        if !std::ptr::eq(self.closed_loop, closed_loop) {
+            self.left = None;
+        }
         self.closed_loop = closed_loop;
         self.grown = Some(grown);
         self.heat = heat;
@@ -150,7 +155,7 @@ impl<'a, S: FnMut(&mut Measured)> Moves<'a, S> {
             &mut self.sense,
             |cycle| {
                 let grown = self.grown.as_ref();
-                let off = grown.map_or(0.0, |growth| growth(cycle.position));
+                let off = grown.map_or(0.0, |growth| growth(cycle.time, cycle.position));
                 errors.push(cycle.error() - off);
             },
         );

@@ -106,18 +106,20 @@ fn a_log_of_probings_makes_a_model_that_predicts_its_held_out_part() {
         };
         let model = axis_thermal::ThermalModel::new(parameters).unwrap();
         let found = follow(model, &slow, &how).unwrap();
-        let errors = found.readings.iter().map(|[_, read, p]| (read - p).abs());
-        (errors.fold(0.0, f64::max), found.probings)
+        let errors = found.readings.iter().map(|[_, read, p]| read - p);
+        let squares = errors.map(|error| error * error).sum::<f64>();
+        let rms = (squares / found.readings.len() as f64).sqrt();
+        (rms, found.probings)
     };
     let assumed = errors(axis.thermal_parameters(), None);
     let set_right = errors(axis.thermal_parameters(), Some(1200.0));
     let fitted = errors(found.fitted.parameters.clone(), None);
     println!("{assumed:?} {set_right:?} {fitted:?}");
     assert!(
-        fitted.0 < 5e-6 && set_right.1 == 5,
+        fitted.0 < 1.5e-6 && set_right.1 == 5,
         "{set_right:?} {fitted:?}"
     );
-    assert!(set_right.0 < 0.8 * assumed.0, "{set_right:?} {assumed:?}");
+    assert!(set_right.0 < 0.9 * assumed.0, "{set_right:?} {assumed:?}");
 }
 
 /// A log of encoder, scale and current, five times a second. The transmission winds up by friction and inertia, the
@@ -158,8 +160,9 @@ fn encoder_and_scale(hours: f64) -> (Log, Vec<[f64; 3]>) {
             column.push(value);
         }
         if k % 1500 == 0 && k > 0 {
-            let growth = |x: f64| machine.growth(20.0, x);
-            truth.push([t, growth(0.6), growth(0.9)]);
+            let warmer = machine.bodies[7] - 20.0;
+            let growth = |x: f64| machine.growth(20.0, x) - 10e-6 * warmer * x;
+            truth.push([t, growth(0.65), growth(0.75)]);
         }
         machine.run(Some(&motion), step, |_| 20.0);
     }
@@ -186,22 +189,24 @@ fn encoder_less_scale_tells_growth_and_the_current_tells_friction() {
     let model = axis.thermal_model().unwrap();
     let stretches = slow.stretches(&model).stretches;
     assert_eq!(stretches.len(), 12);
-    // Readings, each less the first at its place, are growth to within the scale's and the friction's asymmetry.
+    // Readings, each less the first at its place.
     let mut worst = 0.0_f64;
     let read = |stretch: usize, x: f64| {
         let found = &stretches[stretch].found;
+        // Five times a second tells a constant speed 0.1 m from the ends at the earliest.
+        assert!(found.len() >= 4, "{found:?}");
         let after = found.iter().position(|[place, _]| *place > x).unwrap();
         let ([a, p], [b, q]) = (found[after - 1], found[after]);
         p + (q - p) * (x - a) / (b - a)
     };
     for (k, [_, near, far]) in truth.iter().enumerate() {
-        for (x, growth, first) in [(0.6, near, truth[0][1]), (0.9, far, truth[0][2])] {
+        for (x, growth, first) in [(0.65, near, truth[0][1]), (0.75, far, truth[0][2])] {
             let found = read(k, x) - read(0, x);
             worst = worst.max((found - (growth - first)).abs());
         }
     }
     println!("{worst:e}");
-    assert!(worst < 1.5e-6, "{worst:e}");
+    assert!(worst < 1e-6, "{worst:e}");
     // Friction's power beside that of the second simulator: inertia leaves it out.
     let mut machine = HeatedScrew::other(20.0);
     let motion = there_and_back(0.45, 0.95, 0.2, 1.0);
@@ -248,7 +253,7 @@ fn growth_and_friction_are_planned_together() {
         HeatedScrew::assumed(20.0),
         there_and_back(0.45, 0.95, 0.2, 1.0),
     );
-    let warm = WarmMoves::new(&axis, &mut truth, &[0.0, 600.0]).unwrap();
+    let warm = WarmMoves::new(&axis, &mut truth, &[0.0, 600.0], 8.0).unwrap();
     let moves = [NamedMotion {
         name: "stroke".to_owned(),
         motion: stroke.clone(),
@@ -265,7 +270,8 @@ fn growth_and_friction_are_planned_together() {
     };
     let (blind, both) = (run("plan", false), run("plan", true));
     println!("{blind:?} {both:?}");
-    assert!((blind[0] - both[0]).abs() < 1e-6 && both[0] < 2.0);
+    // In the eight seconds of a cold stroke the screw grows by a micrometre.
+    assert!(both[0] < 2.0 && blind[0] < 3.0, "{blind:?} {both:?}");
     assert!(blind[1] > 70.0 && both[1] < 2.5, "{blind:?} {both:?}");
 }
 

@@ -15,7 +15,7 @@ use compensator::{Compensator, Correction, Sample};
 use independent_axis::{HeatedScrew, Motion, there_and_back};
 use miette::{IntoDiagnostic, Result, miette};
 use serde::{Deserialize, Serialize};
-use trajectories::{Limits, Program, Step};
+use trajectories::{Limits, Motion as _, Program, Step};
 
 use super::heat_identified::Fitted;
 
@@ -136,8 +136,10 @@ impl<'a> Cases<'a> {
             motion: there_and_back(0.45, 0.95, 0.2, 1.0),
             with_growth,
         };
+        // Two strokes on end.
+        let pass = 2.0 * stroke.duration();
         let after = AFTER.map(|minutes| 60.0 * minutes);
-        let warm = WarmMoves::new(self.axis, &mut truth, &after).into_diagnostic()?;
+        let warm = WarmMoves::new(self.axis, &mut truth, &after, pass).into_diagnostic()?;
         let model = ThermalModel::new(case.model.clone()).into_diagnostic()?;
         let duty = [stroke.clone()];
         let heat = ModelHeat::of(self.axis, model, &duty, 20.0).into_diagnostic()?;

@@ -49,7 +49,7 @@ pub fn page(found: &Found) -> String {
     let both = [
         (
             "Both corrections, the position from the motor",
-            "Greatest error of the table, growth included, on two strokes there and back on end, homed cold before the first",
+            "Greatest error of the table, growth included, on two strokes there and back on end, homed once before the first",
             &found.motor,
         ),
         (

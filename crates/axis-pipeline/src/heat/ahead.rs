@@ -93,7 +93,7 @@ impl HeatAhead {
         }
     }
 
-    fn push(&mut self, time: f64, growth: impl Fn(f64) -> f64, friction: [f64; 2]) {
+    pub(super) fn push(&mut self, time: f64, growth: impl Fn(f64) -> f64, friction: [f64; 2]) {
         let at = |i: usize| growth(self.least + i as f64 / self.per_length);
         let growth = (0..PLACES).map(at).collect();
         self.instants.push(Instant {

@@ -161,7 +161,7 @@ const PLACES: u32 = 7;
 /// Time over which they are, s: in it growth changes linearly.
 const OVER: f64 = 60.0;
 /// Half of the length over which they are, as a share of what is between two places.
-const BESIDE: f64 = 0.45;
+const BESIDE: f64 = 1.0;
 /// Change of speed from row to row that counts as constant, as a share of the speed.
 const CONSTANT: f64 = 0.01;
 /// Fewest rows of a direction.

@@ -146,12 +146,13 @@ pub struct WarmMoves {
     /// Seconds of the duty before each pass, rising.
     after: Vec<f64>,
     loops: Vec<ClosedLoop>,
-    /// Growth of the machine's table at even positions, at each time.
+    /// Growth of the machine's table along each pass.
     grown: Vec<HeatAhead>,
 }
 
 impl WarmMoves {
-    /// Warms a machine up: what of it is as its file has it, and how warm it is after each of `after` (s, rising).
+    /// Warms a machine up, whose parts are cold as its file has them, for passes of so many seconds after each of
+    /// `after` (s, rising).
     ///
     /// # Errors
     /// [`PipelineError`] if its heat does not settle or its friction vanishes.
@@ -159,6 +160,7 @@ impl WarmMoves {
         machine: &Axis,
         warmth: &mut dyn Warmth,
         after: &[f64],
+        pass: f64,
     ) -> Result<Self, PipelineError> {
         let mut warm = Self {
             after: after.to_vec(),
@@ -167,17 +169,24 @@ impl WarmMoves {
         };
         for time in after {
             warmth.until(*time)?;
-            let friction = warmth.friction();
-            warm.loops
-                .push(ClosedLoop::new(&warm_axis(machine, friction)?)?);
-            let grown = HeatAhead::constant(machine, |x| warmth.growth(x), friction);
+            let before = warmth.friction();
+            let mut grown = HeatAhead::constant(machine, |x| warmth.growth(x), before);
+            warmth.until(time + pass)?;
+            let after = warmth.friction();
+            grown.push(pass, |x| warmth.growth(x), after);
             warm.grown.push(grown);
+            // Friction changes by some thousandths in a pass.
+            let mean = [0, 1].map(|i| 0.5 * (before[i] + after[i]));
+            warm.loops
+                .push(ClosedLoop::new(&warm_axis(machine, mean)?)?);
         }
         Ok(warm)
     }
 
-    /// Makes the moves at each time under a strategy, which predicts heat by `model` or not at all. The axis is
-    /// homed cold, before the first, and its state goes on from time to time.
+    /// Makes the moves at each time under a strategy, which predicts heat by `model` or not at all. At each time the
+    /// axis begins relaxed, where its friction leaves no wind-up: homed there is homed cold, but for the growth. It
+    /// comes to where it is led in a standstill, makes the moves once, from which nothing is learned, and goes on from
+    /// move to move, homed where it was.
     ///
     /// # Errors
     /// As [`Moves::make`], and if the model's heat does not settle.
@@ -195,24 +204,31 @@ impl WarmMoves {
         let mut rig = Moves::new(first, sense);
         let mut all = Vec::new();
         for ((time, closed_loop), grown) in self.after.iter().zip(&self.loops).zip(&self.grown) {
-            if let Some(model) = &mut model {
-                model.until(*time)?;
-            }
-            let ahead = |planned: &NamedMotion| -> Result<_, PipelineError> {
-                let ahead = model.as_ref().map(|model| model.ahead(&*planned.motion));
-                Ok(ahead.transpose()?.map(Arc::new))
-            };
+            let mut since = 0.0;
             let mut make = |planned: &NamedMotion, counts: bool| {
-                let off = Box::new(|x: f64| grown.growth(0.0, x)[0]);
-                rig.warmed(closed_loop, off, ahead(planned)?);
-                match counts {
-                    true => rig.make(strategy, planned),
-                    false => rig.try_out(strategy, planned),
+                let heat = match &mut model {
+                    Some(model) => {
+                        model.until(time + since)?;
+                        Some(Arc::new(model.ahead(&*planned.motion)?))
+                    }
+                    None => None,
+                };
+                let begun = since;
+                let off = move |t: f64, x: f64| grown.growth(begun + t, x)[0];
+                rig.warmed(closed_loop, Box::new(off), heat);
+                if !counts {
+                    return rig.try_out(strategy, planned);
                 }
+                since += planned.motion.duration();
+                rig.make(strategy, planned)
             };
-            // In the minutes before, the drive has followed the growth: it stands where it is led to.
+            // In the minutes before, the drive has followed the growth: it stands where it is led to, its friction as
+            // the moves leave it.
             if let Some(first) = moves.first().filter(|_| *time > 0.0) {
                 make(&standstill(first)?, false)?;
+                for planned in moves {
+                    make(planned, false)?;
+                }
             }
             let mut pass = Vec::new();
             for planned in moves {

@@ -80,7 +80,8 @@ impl Run<'_> {
         stated(&self.context.axis)?;
         let mut truth = ModelHeat::new(machine, &duty, options.air).into_diagnostic()?;
         let model = ModelHeat::new(&self.context.axis, &duty, options.air).into_diagnostic()?;
-        let warm = WarmMoves::new(machine, &mut truth, &times).into_diagnostic()?;
+        let pass = duty.iter().map(|motion| motion.duration()).sum::<f64>();
+        let warm = WarmMoves::new(machine, &mut truth, &times, pass).into_diagnostic()?;
         let progress = bar("compensate", (3 * times.len() * self.motions.len()) as u64);
         let made = |kind: &StrategyKind, model: Option<ModelHeat>| {
             let mut strategy = kind.strategy(self.predictors).into_diagnostic()?;
