@@ -118,6 +118,9 @@ pub enum PipelineError {
         /// How many it takes.
         needed: usize,
     },
+    /// The axis' heat, or a log of it, was refused.
+    #[error(transparent)]
+    Heat(#[from] crate::heat::HeatError),
     /// The axis file lists no trajectories.
     #[error("the axis file lists no [[trajectory]]: give at least one")]
     NoTrajectories,

@@ -18,6 +18,7 @@ pub mod corrections;
 pub mod drive_terms;
 mod error;
 mod figures;
+pub mod heat;
 pub mod identification;
 pub mod learning;
 mod linear_map;

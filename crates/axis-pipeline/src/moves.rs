@@ -5,6 +5,7 @@ use std::sync::Arc;
 use axis_sim::{ClosedLoop, LoopState, Measured, Outcome, Start};
 use compensator::{Compensator, Correction, Homed, LearnedMove, Sample};
 
+use crate::heat::HeatAhead;
 use crate::strategies::{Continued, LearnedValues, NextMove, SharedMotion, Strategy};
 use crate::{Figures, PipelineError};
 
@@ -38,7 +39,13 @@ pub struct Moves<'a, S> {
     closed_loop: &'a ClosedLoop,
     sense: S,
     left: Option<Left>,
+    heat: Option<Arc<HeatAhead>>,
+    grown: Option<Growth<'a>>,
 }
+
+/// By how far the table is from where the controller's measuring has it, m, over the time since the move's begin (s) and
+/// the position.
+pub type Growth<'a> = Box<dyn Fn(f64, f64) -> f64 + 'a>;
 
 /// How the last move has left the axis.
 struct Left {
@@ -57,7 +64,26 @@ impl<'a, S: FnMut(&mut Measured)> Moves<'a, S> {
             closed_loop,
             sense,
             left: None,
+            heat: None,
+            grown: None,
         }
+    }
+
+    /// Goes on with an axis that has warmed up: its loop, by how far its table is off by growth, and what the
+    /// strategy predicts of both. On another loop the axis is settled anew, relaxed and homed where it stands, as
+    /// a state holds the friction that it was made with.
+    pub fn warmed(
+        &mut self,
+        closed_loop: &'a ClosedLoop,
+        grown: Growth<'a>,
+        heat: Option<Arc<HeatAhead>>,
+    ) {
+        if !std::ptr::eq(self.closed_loop, closed_loop) {
+            self.left = None;
+        }
+        self.closed_loop = closed_loop;
+        self.grown = Some(grown);
+        self.heat = heat;
     }
 
     /// Makes a move and lets the strategy learn from it. A move that begins where the last
@@ -110,6 +136,7 @@ impl<'a, S: FnMut(&mut Measured)> Moves<'a, S> {
             Some(left) => (left.state.at_rest(), Some(left.continued)),
             None => (self.closed_loop.start(&Start::at(begin))?, None),
         };
+        strategy.warmed(self.heat.clone());
         let mut compensator = strategy.compensator(&NextMove {
             motion: planned.motion.clone(),
             continued,
@@ -126,7 +153,11 @@ impl<'a, S: FnMut(&mut Measured)> Moves<'a, S> {
             &*planned.motion,
             &mut recording,
             &mut self.sense,
-            |cycle| errors.push(cycle.error()),
+            |cycle| {
+                let grown = self.grown.as_ref();
+                let off = grown.map_or(0.0, |growth| growth(cycle.time, cycle.position));
+                errors.push(cycle.error() - off);
+            },
         );
         let Recording { samples, last, .. } = recording;
         if let Outcome::Completed = outcome {

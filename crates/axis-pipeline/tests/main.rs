@@ -1,6 +1,7 @@
 //! One test program: stages of the pipeline as library calls.
 
 mod drive_terms;
+mod heat;
 mod learning;
 mod moves;
 mod robustness;

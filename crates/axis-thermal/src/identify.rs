@@ -1,43 +1,31 @@
 //! A thermal model from hours of logged growth.
 //!
-//! Growth is what a probe finds at a few places, or the motor's encoder less a scale. Single conductances
+//! Growth is what a probe finds at a few places, or a scale less the motor's encoder. Single conductances
 //! are hardly determined by it (several give the same growth), so that the factors are held near 1 by a
-//! prior, and what counts is the growth that the model predicts, not its numbers.
+//! prior, and what counts is the growth that the model predicts, not its numbers. Growth says little of
+//! how friction falls; the power that the motor spends on friction says that.
 //!
 //! ```text
-//! least   Σ ((δ_model(x, t) − δ_log)/σ)² + Σ (ln f_k/s)²        over the factors f_k of the unknowns
+//! least   Σ ((δ_model(x, t) − δ_log)/σ)² + Σ ((P_model/P_log − 1)/ρ)² + Σ (ln f_k/s)²     over the factors f_k
 //! ```
 //!
 //! by Levenberg and Marquardt's method over ln f, with differences for the derivatives.
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::duty::Duty;
 use crate::error::{ThermalError, check};
-use crate::model::{ThermalModel, ThermalState};
+use crate::growth_log::{FollowedLog, GrowthLog};
+use crate::model::ThermalModel;
 use crate::parameters::ThermalParameters;
-use crate::run::ThermalAccuracy;
 use crate::unknown::ThermalUnknown;
-use crate::work::AxisAtWork;
-
-/// A stretch of a log: a duty, and growth that was found at its end.
-#[derive(Clone, Debug)]
-pub struct GrowthStretch {
-    /// Losses of the reference; a standstill is a duty too.
-    pub duty: Duty,
-    /// How long, s.
-    pub duration: f64,
-    /// Temperature of the air at its begin and its end, °C.
-    pub air: [f64; 2],
-    /// Position (m) and growth of the screw since the log's begin (m), at the end of the stretch.
-    pub found: Vec<[f64; 2]>,
-}
 
 /// How a model is fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GrowthFit {
     /// σ: by which growth in the log and in the best model differ, m.
     pub uncertainty: f64,
+    /// ρ: the share by which the friction's power in the log and in the best model differ.
+    pub friction_uncertainty: f64,
     /// s: by which the logarithms of the factors may differ from 0.
     pub prior: f64,
     /// Most steps.
@@ -45,10 +33,11 @@ pub struct GrowthFit {
 }
 
 impl Default for GrowthFit {
-    /// 1 µm; 0.7, about twofold; 30 steps.
+    /// 1 µm; 1 %; 0.7, about twofold; 30 steps.
     fn default() -> Self {
         Self {
             uncertainty: 1e-6,
+            friction_uncertainty: 0.01,
             prior: 0.7,
             iterations: 30,
         }
@@ -67,27 +56,21 @@ pub struct FittedGrowth {
 }
 
 impl ThermalParameters {
-    /// These numbers with the unknowns' factors such that the model grows as a log says. All
-    /// bodies begin at the first air's temperature.
+    /// These numbers with the unknowns' factors such that the model grows as the logs say. In each log
+    /// all bodies begin at the first air's temperature.
     ///
     /// # Errors
-    /// [`ThermalError`] if the log's duties are of another screw, nothing was found in it, or the
+    /// [`ThermalError`] if a log's duties are of another screw, nothing was read in them, or the
     /// numbers make no model.
     pub fn fit(
         &self,
-        log: &[GrowthStretch],
+        logs: &[GrowthLog],
         unknowns: &[ThermalUnknown],
         how: &GrowthFit,
     ) -> Result<FittedGrowth, ThermalError> {
-        let found: usize = log.iter().map(|stretch| stretch.found.len()).sum();
+        let found: usize = logs.iter().map(GrowthLog::readings).sum();
         let valid = "a log with growth at one place or more";
-        check(
-            found > 0,
-            "number of growths found",
-            found as f64,
-            "",
-            valid,
-        )?;
+        check(found > 0, "number of growths read", found as f64, "", valid)?;
         check(
             how.uncertainty > 0.0,
             "uncertainty",
@@ -96,28 +79,31 @@ impl ThermalParameters {
             "above 0",
         )?;
         check(how.prior > 0.0, "prior", how.prior, "", "above 0")?;
+        let share = how.friction_uncertainty;
+        check(share > 0.0, "friction_uncertainty", share, "", "above 0")?;
         let problem = Problem {
             assumed: self,
-            log,
+            logs,
             unknowns,
             how,
         };
         let logarithms = problem.solve()?;
         let parameters = problem.parameters(&logarithms);
-        let residuals = problem.growth_residuals(&logarithms)?;
-        let squares: f64 = residuals.iter().map(|r| r * r).sum();
+        let followed = problem.followed(&logarithms)?;
+        let errors: Vec<f64> = followed.iter().flat_map(FollowedLog::errors).collect();
+        let squares: f64 = errors.iter().map(|e| e * e).sum();
         let factors = unknowns.iter().zip(&logarithms).map(|(u, l)| (*u, l.exp()));
         Ok(FittedGrowth {
             parameters,
             factors: factors.collect(),
-            rms: how.uncertainty * (squares / found as f64).sqrt(),
+            rms: (squares / errors.len().max(1) as f64).sqrt(),
         })
     }
 }
 
 struct Problem<'a> {
     assumed: &'a ThermalParameters,
-    log: &'a [GrowthStretch],
+    logs: &'a [GrowthLog],
     unknowns: &'a [ThermalUnknown],
     how: &'a GrowthFit,
 }
@@ -139,33 +125,21 @@ impl Problem<'_> {
         parameters
     }
 
-    /// Model less log over σ.
-    fn growth_residuals(&self, logarithms: &DVector<f64>) -> Result<Vec<f64>, ThermalError> {
+    fn followed(&self, logarithms: &DVector<f64>) -> Result<Vec<FollowedLog>, ThermalError> {
         let model = ThermalModel::new(self.parameters(logarithms))?;
-        let first = self.log.first().map_or(0.0, |stretch| stretch.air[0]);
-        let cold = model.at_rest(first);
-        let mut state = cold.clone();
-        let mut residuals = Vec::new();
-        let mut at_work: Option<(&Duty, AxisAtWork)> = None;
-        for stretch in self.log {
-            // The same duty goes on in the same network.
-            let network = match at_work.take() {
-                Some((duty, network)) if *duty == stretch.duty => network,
-                _ => model.under(&stretch.duty)?,
-            };
-            follow(&network, &mut state, stretch)?;
-            at_work = Some((&stretch.duty, network));
-            for &[x, growth] in &stretch.found {
-                let predicted = model.growth(&cold, &state, x).screw;
-                residuals.push((predicted - growth) / self.how.uncertainty);
-            }
-        }
-        Ok(residuals)
+        self.logs.iter().map(|log| model.follow(log)).collect()
     }
 
-    /// With the prior's.
+    /// Model less log over their uncertainties, and the prior's.
     fn residuals(&self, logarithms: &DVector<f64>) -> Result<DVector<f64>, ThermalError> {
-        let mut all = self.growth_residuals(logarithms)?;
+        let mut all = Vec::new();
+        for log in self.followed(logarithms)? {
+            all.extend(log.errors().map(|error| error / self.how.uncertainty));
+            // A standstill has no friction to compare.
+            let worked = log.friction.iter().filter(|read| read.found > 0.0);
+            let share = self.how.friction_uncertainty;
+            all.extend(worked.map(|read| (read.predicted / read.found - 1.0) / share));
+        }
         all.extend(logarithms.iter().map(|l| l / self.how.prior));
         Ok(DVector::from_vec(all))
     }
@@ -215,16 +189,4 @@ impl Problem<'_> {
         }
         Ok(at)
     }
-}
-
-/// A stretch from its begin to its end, in air that changes linearly.
-fn follow(
-    at_work: &AxisAtWork,
-    state: &mut ThermalState,
-    stretch: &GrowthStretch,
-) -> Result<(), ThermalError> {
-    let (begun, [from, to]) = (state.time, stretch.air);
-    let air = |t: f64| from + (to - from) * (t - begun) / stretch.duration;
-    at_work.run_in(state, air, stretch.duration, &ThermalAccuracy::default())?;
-    Ok(())
 }

@@ -22,8 +22,9 @@
 //!   the losses allow. An hour takes some milliseconds, and no memory that grows with the time.
 //! - [`Growth`], [`ThermalForce`]: by position, for a screw fixed at one end or both, for scale and bed.
 //!
-//! - [`GrowthPredictor`]: growth and friction while an axis works, from its reference alone.
-//! - [`ThermalParameters::fit`]: a model from hours of logged growth.
+//! - [`GrowthPredictor`]: growth and friction while an axis works, from its reference alone, set right by a probe
+//!   now and then.
+//! - [`GrowthLog`], [`ThermalParameters::fit`]: a model from hours of logged growth.
 //!
 //! # Units
 //! SI, temperatures in °C. Of an axis that turns, torque and speed stand for force and speed.
@@ -66,6 +67,7 @@ mod duty;
 mod error;
 mod friction;
 mod growth;
+mod growth_log;
 mod identify;
 mod model;
 mod network;
@@ -80,7 +82,10 @@ pub use duty::{Duty, DutySample};
 pub use error::ThermalError;
 pub use friction::{FrictionLaws, TemperatureLaw};
 pub use growth::{Growth, ThermalForce};
-pub use identify::{FittedGrowth, GrowthFit, GrowthStretch};
+pub use growth_log::{
+    FollowedFriction, FollowedGrowth, FollowedLog, GrowthLog, GrowthOf, GrowthStretch, GrowthZero,
+};
+pub use identify::{FittedGrowth, GrowthFit};
 pub use model::{HeatNode, ThermalModel, ThermalState};
 pub use parameters::{
     Expansions, FrictionShares, HeatShares, ThermalBodies, ThermalBody, ThermalLinks,

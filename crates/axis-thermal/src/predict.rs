@@ -3,8 +3,12 @@
 use crate::duty::{Duty, DutySample};
 use crate::error::{ThermalError, check};
 use crate::growth::Growth;
+use crate::growth_log::GrowthOf;
 use crate::model::{ThermalModel, ThermalState};
 use crate::run::ThermalAccuracy;
+
+/// Spread of positions below which a probing tells no slope, m.
+const NARROW: f64 = 1e-3;
 
 /// Follows the heat of an axis by the losses of its reference, with no sensor but that of the air: what a
 /// controller takes from its reference ([`GrowthPredictor::growth`]) and scales the friction of its
@@ -45,6 +49,11 @@ pub struct GrowthPredictor {
     before: ThermalState,
     now: ThermalState,
     factors: [f64; 2],
+    /// By which growth was off when it was probed: an offset (m) and a slope (m/m), before the running
+    /// window and after it.
+    off: [[f64; 2]; 2],
+    /// Share of the window that was over then.
+    probed_at: f64,
 }
 
 impl GrowthPredictor {
@@ -63,6 +72,8 @@ impl GrowthPredictor {
             before: state.clone(),
             now: state,
             factors: [1.0; 2],
+            off: [[0.0; 2]; 2],
+            probed_at: 0.0,
             model,
         };
         predictor.factors = predictor.factors_now()?;
@@ -98,23 +109,75 @@ impl GrowthPredictor {
         at_work.run_in(&mut next, air, duration, &ThermalAccuracy::default())?;
         self.factors = at_work.friction_factors(&next);
         self.before = std::mem::replace(&mut self.now, next);
+        self.off[0] = self.off[1];
+        self.probed_at = 0.0;
         Ok(())
     }
 
-    /// The axis has been homed, or its growth probed: growth is counted from now on.
+    /// The axis has been homed: growth is counted from now on.
     pub fn home(&mut self) {
         self.homed = self.now.clone();
         self.before = self.now.clone();
+        self.off = [[0.0; 2]; 2];
+    }
+
+    /// Growth since homing has been probed at some positions (each the position and what was read there, m).
+    /// From now on a straight line over the position, an offset if all are one position, is added to
+    /// the model's growth, so that it goes through what was read; [`GrowthPredictor::growth`] takes
+    /// it up along the running window. The line holds until the next probing or homing: what a model
+    /// lacks changes slowly and is much alike at all positions (bearings, bed, air).
+    ///
+    /// # Errors
+    /// [`ThermalError::Invalid`] if nothing was read, or a number is not finite.
+    pub fn probed(&mut self, of: GrowthOf, read: &[[f64; 2]]) -> Result<(), ThermalError> {
+        let count = read.len() as f64;
+        let valid = "one position or more";
+        check(count > 0.0, "positions that were probed", count, "", valid)?;
+        for value in read.iter().flatten() {
+            check(value.is_finite(), "a reading", *value, "m", "finite")?;
+        }
+        let model = |x: f64| self.model.growth(&self.homed, &self.now, x).read(of);
+        let errors: Vec<[f64; 2]> = read.iter().map(|&[x, y]| [x, y - model(x)]).collect();
+        let mean = |i: usize| errors.iter().map(|e| e[i]).sum::<f64>() / count;
+        let [place, error] = [mean(0), mean(1)];
+        let sum = |f: fn([f64; 2]) -> f64| -> f64 {
+            let about = errors.iter().map(|e| f([e[0] - place, e[1] - error]));
+            about.sum()
+        };
+        let spread = sum(|[x, _]| x * x);
+        let slope = match spread > count * NARROW * NARROW {
+            true => sum(|[x, y]| x * y) / spread,
+            false => 0.0,
+        };
+        self.off = [self.off_now(), [error - slope * place, slope]];
+        self.probed_at = self.share();
+        Ok(())
+    }
+
+    /// Share of the running window that is over.
+    fn share(&self) -> f64 {
+        (self.gathered.duration() / self.window).min(1.0)
+    }
+
+    fn off_now(&self) -> [f64; 2] {
+        let [from, to] = self.off;
+        let left = 1.0 - self.probed_at;
+        let share = match left > 0.0 {
+            true => ((self.share() - self.probed_at) / left).clamp(0.0, 1.0),
+            false => 1.0,
+        };
+        [0, 1].map(|i| from[i] + share * (to[i] - from[i]))
     }
 
     /// Growth at `x` (m) since homing, along the straight line of the running window.
     pub fn growth(&self, x: f64) -> Growth {
         let of = |state| self.model.growth(&self.homed, state, x);
         let (from, to) = (of(&self.before), of(&self.now));
-        let share = (self.gathered.duration() / self.window).min(1.0);
+        let share = self.share();
         let between = |from: f64, to: f64| from + share * (to - from);
+        let [offset, slope] = self.off_now();
         Growth {
-            screw: between(from.screw, to.screw),
+            screw: between(from.screw, to.screw) + offset + slope * x,
             scale: between(from.scale, to.scale),
             bed: between(from.bed, to.bed),
         }
@@ -122,7 +185,12 @@ impl GrowthPredictor {
 
     /// Growth at `x` (m) since homing at the end of the last window, without a delay.
     pub fn growth_at_end(&self, x: f64) -> Growth {
-        self.model.growth(&self.homed, &self.now, x)
+        let growth = self.model.growth(&self.homed, &self.now, x);
+        let [_, [offset, slope]] = self.off;
+        Growth {
+            screw: growth.screw + offset + slope * x,
+            ..growth
+        }
     }
 
     /// Dry and viscous friction as multiples of what they are at the reference temperature, under the

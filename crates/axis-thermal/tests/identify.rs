@@ -2,8 +2,8 @@
 //! with the power 2/3, free convection by ΔT^¼, shares and conductances 10 to 60 % off.
 
 use axis_thermal::{
-    Duty, GrowthFit, GrowthPredictor, GrowthStretch, ThermalModel, ThermalParameters,
-    ThermalUnknown,
+    Duty, GrowthFit, GrowthLog, GrowthOf, GrowthPredictor, GrowthStretch, GrowthZero, ThermalModel,
+    ThermalParameters, ThermalUnknown,
 };
 use independent_axis::{HeatHours, HeatedScrew, Random};
 
@@ -38,7 +38,7 @@ fn hours(of: &HeatHours, places: &[f64], every: usize, noise: f64) -> Hours {
     for (motion, stretches) in &of.duties {
         let duty: Duty = duty(&fitted, motion.as_ref());
         for _ in 0..*stretches {
-            let from = machine.time;
+            let (from, spent) = (machine.time, machine.friction_heat);
             machine.run(motion.as_ref(), FIVE_MINUTES, air);
             let probed = (log.len() + 1) % every == 0;
             let probe = |x: &f64| [*x, machine.growth(cold, *x) + noise * random.normal()];
@@ -50,6 +50,7 @@ fn hours(of: &HeatHours, places: &[f64], every: usize, noise: f64) -> Hours {
                     true => places.iter().map(probe).collect(),
                     false => Vec::new(),
                 },
+                friction: Some((machine.friction_heat - spent) / FIVE_MINUTES),
             });
             truth.push(PLACES.map(|x| machine.growth(cold, x)));
         }
@@ -87,9 +88,15 @@ fn checked(parameters: &ThermalParameters, check: &Hours) -> [f64; 3] {
 fn growth_is_predicted_on_hours_that_were_not_fitted() {
     let check = hours(&HeatHours::to_check(), &[], 1, 0.0);
     let before = checked(&assumed(), &check);
-    let log = hours(&HeatHours::to_fit(), &PLACES, 1, 0.5e-6).log;
+    let mut log = GrowthLog {
+        stretches: hours(&HeatHours::to_fit(), &PLACES, 1, 0.5e-6).log,
+        ..GrowthLog::default()
+    };
+    for stretch in &mut log.stretches {
+        stretch.friction = None;
+    }
     let fit = assumed()
-        .fit(&log, &ThermalUnknown::ALL, &GrowthFit::default())
+        .fit(&[log], &ThermalUnknown::ALL, &GrowthFit::default())
         .unwrap();
     let after = checked(&fit.parameters, &check);
     println!("{before:?} {after:?} {:.3e} {:?}", fit.rms, fit.factors);
@@ -100,6 +107,95 @@ fn growth_is_predicted_on_hours_that_were_not_fitted() {
     assert!(fit.rms < 1e-6, "{}", fit.rms);
 }
 
+/// Greatest error of the friction's power on other hours, as a share.
+fn friction_off(parameters: &ThermalParameters, check: &Hours) -> f64 {
+    let log = GrowthLog {
+        stretches: check.log.clone(),
+        ..GrowthLog::default()
+    };
+    let model = ThermalModel::new(parameters.clone()).unwrap();
+    let followed = model.follow(&log).unwrap().friction;
+    let worked = followed.iter().filter(|read| read.found > 0.0);
+    let off = worked.map(|read| (read.predicted / read.found - 1.0).abs());
+    off.fold(0.0, f64::max)
+}
+
+/// Growth alone says little of how friction falls; the power that is spent on it does. Readings that count
+/// from the first at each place lose the offsets of the places.
+#[test]
+fn the_power_of_friction_in_the_log_tells_how_friction_falls() {
+    let check = hours(&HeatHours::to_check(), &[], 1, 0.0);
+    let mut log = GrowthLog {
+        stretches: hours(&HeatHours::to_fit(), &[0.5, 1.1], 2, 0.5e-6).log,
+        zero: GrowthZero::FirstAtPlace,
+        of: GrowthOf::Screw,
+    };
+    for read in log.stretches.iter_mut().flat_map(|s| &mut s.found) {
+        // Pitch errors of the screw.
+        read[1] += 5e-6 * (7.0 * read[0]).sin();
+    }
+    let both = fit(&log);
+    for stretch in &mut log.stretches {
+        stretch.friction = None;
+    }
+    let alone = fit(&log);
+    let [before, alone, both] =
+        [&assumed(), &alone, &both].map(|p| (friction_off(p, &check), checked(p, &check)));
+    println!("{before:?} {alone:?} {both:?}");
+    assert!(
+        both.0 < 0.02 && both.0 < 0.5 * alone.0,
+        "{alone:?} {both:?}"
+    );
+    assert!(both.1[0] < 6.0, "{both:?}");
+}
+
+fn fit(log: &GrowthLog) -> ThermalParameters {
+    let logs = std::slice::from_ref(log);
+    let fit = assumed().fit(logs, &ThermalUnknown::ALL, &GrowthFit::default());
+    fit.unwrap().parameters
+}
+
+/// After a probing at two places the prediction goes through what was read.
+#[test]
+fn probing_sets_the_prediction_right() {
+    let check = hours(&HeatHours::to_check(), &[], 1, 0.0);
+    let mut predictor = {
+        let model = ThermalModel::new(assumed()).unwrap();
+        GrowthPredictor::new(model, check.log[0].air[0], 60.0).unwrap()
+    };
+    let mut at_once = 0.0_f64;
+    for (k, (stretch, truth)) in check.log.iter().zip(&check.truth).enumerate() {
+        let [from, to] = stretch.air;
+        let begun = predictor.state().time;
+        let air = |t: f64| from + (to - from) * (t - begun) / stretch.duration;
+        predictor
+            .advance(&stretch.duty, stretch.duration, air)
+            .unwrap();
+        if (k + 1) % 12 == 0 {
+            let read = [1, 3].map(|i| [PLACES[i], truth[i]]);
+            predictor.probed(GrowthOf::Screw, &read).unwrap();
+            for [x, growth] in read {
+                at_once = at_once.max((predictor.growth_at_end(x).screw - growth).abs());
+            }
+        }
+    }
+    assert!(at_once < 1e-12, "{at_once}");
+    // One place, or the same twice: an offset.
+    predictor
+        .probed(GrowthOf::Screw, &[[0.5, 9e-6], [0.5, 11e-6]])
+        .unwrap();
+    assert!((predictor.growth_at_end(0.5).screw - 10e-6).abs() < 1e-12);
+    let [near, far] = [0.2, 1.4].map(|x| predictor.growth_at_end(x).screw);
+    predictor.home();
+    assert_eq!(predictor.growth_at_end(1.4).screw, 0.0);
+    assert!(far > near);
+    let error = predictor.probed(GrowthOf::Screw, &[]).unwrap_err();
+    assert!(
+        error.to_string().contains("one position or more"),
+        "{error}"
+    );
+}
+
 #[test]
 fn a_log_without_growth_is_refused() {
     let model = ThermalModel::new(assumed()).unwrap();
@@ -108,8 +204,13 @@ fn a_log_without_growth_is_refused() {
         duration: 300.0,
         air: [20.0; 2],
         found: Vec::new(),
+        friction: None,
     };
-    let error = assumed().fit(&[stretch], &ThermalUnknown::ALL, &GrowthFit::default());
+    let log = GrowthLog {
+        stretches: vec![stretch],
+        ..GrowthLog::default()
+    };
+    let error = assumed().fit(&[log], &ThermalUnknown::ALL, &GrowthFit::default());
     assert!(
         error
             .unwrap_err()

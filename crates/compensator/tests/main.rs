@@ -23,3 +23,4 @@ mod residual;
 mod single_precision;
 #[cfg(feature = "alloc")]
 mod transfer_function;
+mod warm;

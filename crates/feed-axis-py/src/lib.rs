@@ -41,6 +41,7 @@ mod discovery;
 mod errors;
 mod export;
 mod frf;
+mod heat;
 mod html;
 mod identify;
 mod learn;

@@ -123,7 +123,11 @@ impl FromPyObject<'_, '_> for Renamed {
 }
 
 /// The columns of a frame, a mapping or a Run as channels, the time first.
-fn columns(given: &Bound<'_, PyAny>, log: &str, renamed: &Renamed) -> PyResult<Vec<Channel>> {
+pub(crate) fn columns(
+    given: &Bound<'_, PyAny>,
+    log: &str,
+    renamed: &Renamed,
+) -> PyResult<Vec<Channel>> {
     let names = match given.getattr_opt("columns")? {
         Some(columns) => columns,
         None if given.hasattr("keys")? => given.call_method0("keys")?,

@@ -159,3 +159,191 @@ fn what_cannot_be_heated_is_refused() {
         "{message}"
     );
 }
+
+/// A log of two hours on a machine of other numbers, by the network itself: the growth of each ten minutes at two
+/// positions. How good a fit is, is for `axis-pipeline` and `axis-thermal`; here its words and its file count.
+fn probed(folder: &std::path::Path, set: &[&str]) -> String {
+    let mut text = String::from("t_s,duty_1,place_mm,growth_um\n0,0,450,0\n");
+    let mut arguments = vec!["--axis", SCREW, "--at", "450", "950", "--duration", "2h"];
+    for key in set {
+        arguments.extend(["--set", key]);
+    }
+    let hours = found(&arguments);
+    let growth = |place: usize, k: usize| hours["places"][place]["screw_um"][k].as_f64().unwrap();
+    for k in (20..=240).step_by(20) {
+        let t = 30.0 * k as f64;
+        text += &format!(
+            "{},1,450,{}\n{},1,950,{}\n",
+            t,
+            growth(0, k),
+            t + 0.001,
+            growth(1, k)
+        );
+    }
+    let file = folder.join("probed.csv");
+    std::fs::write(&file, text).unwrap();
+    file.display().to_string()
+}
+
+#[test]
+fn a_fitted_axis_file_predicts_the_log() {
+    let folder = tempfile::tempdir().unwrap();
+    let other = [
+        "thermal.nut_to_table_w_per_k=7",
+        "thermal.nut_viscous_share=0.48",
+    ];
+    let log = probed(folder.path(), &other);
+    let out = folder.path().join("fitted.toml").display().to_string();
+    let fitted = found(&["--axis", SCREW, "--fit", &log, "--out", &out]);
+    assert_eq!(fitted["readings"], 18);
+    assert_eq!(fitted["held_out_readings"], 6);
+    let error = |of: &serde_json::Value| of["greatest_um"].as_f64().unwrap();
+    assert!(error(&fitted["assumed_numbers"]) > 3.0, "{fitted}");
+    assert!(error(&fitted["fitted_numbers"]) < 0.5, "{fitted}");
+    let text = std::fs::read_to_string(&out).unwrap();
+    assert!(
+        text.starts_with("# [thermal] fitted by `feed-axis heat --fit`"),
+        "{text}"
+    );
+    assert!(
+        text.contains("Held out: the last 25 %, 6 readings"),
+        "{text}"
+    );
+    // The file is an axis file, and predicts what it was fitted to.
+    let csv = folder.path().join("growth.csv").display().to_string();
+    let along = found(&[
+        "--axis",
+        &out,
+        "--predict",
+        &log,
+        "--at",
+        "950",
+        "--out",
+        &csv,
+    ]);
+    assert_eq!(along["readings"], 25);
+    assert!(error(&along) < 0.5, "{along}");
+    let rows = std::fs::read_to_string(&csv).unwrap();
+    assert!(
+        rows.starts_with("t_s,growth_at_950_mm_m,dry_factor_1,viscous_factor_1\n"),
+        "{rows}"
+    );
+    assert_eq!(rows.lines().count(), 26);
+    // From a homing after half an hour, set right each half hour.
+    let arguments = [
+        "heat",
+        "--axis",
+        SCREW,
+        "--predict",
+        &log,
+        "--probe-each",
+        "30min",
+    ];
+    let words = succeed(&arguments);
+    assert!(words.contains("set right by 3 probings"), "{words}");
+}
+
+#[test]
+fn slow_logs_that_cannot_be_used_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("log.csv");
+    std::fs::write(
+        &file,
+        "t_s,duty_1,place_mm,growth_um\n0,0,450,0\n600,2,450,7\n",
+    )
+    .unwrap();
+    let log = file.display().to_string();
+    let out = folder.path().join("out.toml").display().to_string();
+    for (arguments, words) in [
+        (vec!["--fit", &log, "--out", &out], "duty 2 in row 2"),
+        (vec!["--fit", &log], "--out"),
+        (
+            vec!["--fit", &log, "--out", &out, "--held-out", "95"],
+            "from 0 to 90",
+        ),
+        (
+            vec!["--predict", &log],
+            "valid: 0 for standstill, or from 1 to 1",
+        ),
+        (vec!["--predict", "none.csv"], "none.csv"),
+    ] {
+        let mut all = vec!["heat", "--axis", SCREW];
+        all.extend(&arguments);
+        let message = refuse(&all);
+        assert!(message.contains(words), "{arguments:?}: {message}");
+    }
+    assert!(!std::path::Path::new(&out).exists());
+}
+
+/// Growth and friction, the moves cold and after five minutes of them.
+#[test]
+fn moves_are_made_on_an_axis_that_warms_up() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("stroke.toml");
+    let step = |to: f64| {
+        format!(
+            "[[steps]]\nmove = {{ to_mm = {to}, velocity_mm_s = 200, acceleration_mm_s2 = 1000, jerk_mm_s3 = 10000 }}\n"
+        )
+    };
+    std::fs::write(
+        &program,
+        format!("start_mm = 450\n{}{}", step(650.0), step(450.0)),
+    )
+    .unwrap();
+    let program = program.display().to_string();
+    let run_with = |axis: &str, moves: &[&str], after: &[&str]| {
+        let mut all = vec![
+            "compensate",
+            "--format",
+            "json",
+            "--axis",
+            axis,
+            "--strategy",
+            "plan",
+            "--moves",
+        ];
+        all.extend(moves);
+        all.push("--after");
+        all.extend(after);
+        run(&all)
+    };
+    let output = run_with(SCREW, &[&program], &["5min"]);
+    assert!(output.status.success(), "{output:?}");
+    let made: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let max = |pass: usize, of: &str| {
+        made["passes"][pass]["error_um"][of]["max"]
+            .as_f64()
+            .unwrap()
+    };
+    assert_eq!(made["passes"].as_array().unwrap().len(), 2);
+    assert!(
+        (max(0, "with_heat") - max(0, "without_heat")).abs() < 0.2,
+        "{made}"
+    );
+    assert!(
+        max(1, "without_heat") > 20.0 && max(1, "with_heat") < 3.0,
+        "{made}"
+    );
+    for (axis, moves, after, words) in [
+        (SCREW, vec!["1"], vec!["5min"], "end where they begin"),
+        (
+            SCREW,
+            vec![program.as_str()],
+            vec!["1h", "5min"],
+            "do not rise",
+        ),
+        (
+            "data/axes/screw-datasheet.toml",
+            vec![program.as_str()],
+            vec!["5min"],
+            "[thermal]",
+        ),
+    ] {
+        let output = run_with(axis, &moves, &after);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(
+            !output.status.success() && message.contains(words),
+            "{message}"
+        );
+    }
+}

@@ -102,6 +102,8 @@ pub struct HeatedScrew {
     pub time: f64,
     /// All heat so far, J.
     pub heat: f64,
+    /// That of friction, J.
+    pub friction_heat: f64,
 }
 
 impl HeatedScrew {
@@ -115,6 +117,7 @@ impl HeatedScrew {
             screw: vec![temperature; CELLS],
             time: 0.0,
             heat: 0.0,
+            friction_heat: 0.0,
         }
     }
 
@@ -163,6 +166,7 @@ impl HeatedScrew {
             1.5 * p.resistance * current * current * (1.0 + 0.00393 * (self.bodies[0] - 20.0));
         let heats = [copper, w * front, w * rear, w * nut, w * guide];
         self.heat += STEP * heats.iter().sum::<f64>();
+        self.friction_heat += STEP * heats[1..].iter().sum::<f64>();
         self.conduct(x, w, heats, air);
     }
 

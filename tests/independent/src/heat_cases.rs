@@ -74,6 +74,29 @@ pub fn there_and_back(from: f64, to: f64, speed: f64, standstill: f64) -> Motion
         .rest(standstill)
 }
 
+/// A stroke there and back: two places (m), speed (m/s), standstills (s).
+pub type Stroke = [f64; 4];
+
+/// Four hours of five duties and standstills: each a stroke (none at standstill) and how often five minutes of it.
+pub const HOURS_TO_FIT: [(Option<Stroke>, u32); 7] = [
+    (Some([0.45, 0.95, 0.2, 1.0]), 10),
+    (None, 5),
+    (Some([0.1, 1.4, 0.25, 0.5]), 9),
+    (Some([0.9, 1.4, 0.12, 2.0]), 7),
+    (None, 4),
+    (Some([0.1, 0.5, 0.2, 0.5]), 7),
+    (Some([0.3, 1.1, 0.08, 1.0]), 6),
+];
+
+/// Three hours of others.
+pub const HOURS_TO_CHECK: [(Option<Stroke>, u32); 5] = [
+    (Some([0.6, 1.2, 0.18, 0.7]), 9),
+    (Some([0.2, 0.8, 0.22, 1.5]), 8),
+    (None, 4),
+    (Some([0.15, 1.35, 0.15, 0.5]), 8),
+    (Some([0.7, 1.3, 0.25, 1.0]), 7),
+];
+
 /// Hours of duties: each with its motion (none at standstill) and how often five minutes of it.
 #[derive(Clone, Debug)]
 pub struct HeatHours {
@@ -84,33 +107,28 @@ pub struct HeatHours {
 }
 
 impl HeatHours {
-    /// Four hours of five duties and standstills, in air that drifts by 0.8 K and 0.25 K an hour.
-    pub fn to_fit() -> Self {
+    fn of(hours: &[(Option<Stroke>, u32)], air: fn(f64) -> f64) -> Self {
+        let motion = |[from, to, speed, rest]: Stroke| there_and_back(from, to, speed, rest);
+        let duties = hours
+            .iter()
+            .map(|(stroke, count)| (stroke.map(motion), *count));
         Self {
-            duties: vec![
-                (Some(there_and_back(0.45, 0.95, 0.2, 1.0)), 10),
-                (None, 5),
-                (Some(there_and_back(0.1, 1.4, 0.25, 0.5)), 9),
-                (Some(there_and_back(0.9, 1.4, 0.12, 2.0)), 7),
-                (None, 4),
-                (Some(there_and_back(0.1, 0.5, 0.2, 0.5)), 7),
-                (Some(there_and_back(0.3, 1.1, 0.08, 1.0)), 6),
-            ],
-            air: |t| 20.0 + 0.25 * t / 3600.0 + 0.8 * (t / 1900.0).sin(),
+            duties: duties.collect(),
+            air,
         }
     }
 
-    /// Three hours of others, begun 1.8 K warmer.
+    /// [`HOURS_TO_FIT`], in air that drifts by 0.8 K and 0.25 K an hour.
+    pub fn to_fit() -> Self {
+        Self::of(&HOURS_TO_FIT, |t| {
+            20.0 + 0.25 * t / 3600.0 + 0.8 * (t / 1900.0).sin()
+        })
+    }
+
+    /// [`HOURS_TO_CHECK`], begun 1.8 K warmer.
     pub fn to_check() -> Self {
-        Self {
-            duties: vec![
-                (Some(there_and_back(0.6, 1.2, 0.18, 0.7)), 9),
-                (Some(there_and_back(0.2, 0.8, 0.22, 1.5)), 8),
-                (None, 4),
-                (Some(there_and_back(0.15, 1.35, 0.15, 0.5)), 8),
-                (Some(there_and_back(0.7, 1.3, 0.25, 1.0)), 7),
-            ],
-            air: |t| 21.8 - 0.3 * t / 3600.0 + 0.5 * ((t / 2300.0 + 1.0).sin() - 1.0_f64.sin()),
-        }
+        Self::of(&HOURS_TO_CHECK, |t| {
+            21.8 - 0.3 * t / 3600.0 + 0.5 * ((t / 2300.0 + 1.0).sin() - 1.0_f64.sin())
+        })
     }
 }

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use independent_axis::cases::{CASES, named};
-use independent_axis::{Rough, SLIDE_CASES, write_case, write_slide};
+use independent_axis::{Rough, SLIDE_CASES, write_case, write_heat, write_slide};
 
 /// Logs of the paper's ball-screw axis from a simulator of their own, with something hidden
 #[derive(Parser)]
@@ -20,6 +20,9 @@ struct Options {
     /// A slide on a linear motor instead, with this hidden
     #[arg(long, value_name = "NAME", conflicts_with = "case", value_parser = SLIDE_CASES.map(|(name, _)| name))]
     slide: Option<String>,
+    /// Hours of growth of a screw instead, and the duties in them
+    #[arg(long, conflicts_with_all = ["case", "slide"])]
+    heat: bool,
     /// Seed of noise and of parameter errors
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -63,6 +66,10 @@ fn run(options: &Options) -> Result<(), Box<dyn std::error::Error>> {
     let Some(folder) = &options.out else {
         return Ok(());
     };
+    if options.heat {
+        write_heat(folder, options.seed)?;
+        return Ok(writeln!(out, "{}", folder.display())?);
+    }
     if let Some(asked) = &options.slide {
         for (_, hidden) in SLIDE_CASES.iter().filter(|(name, _)| name == asked) {
             write_slide(hidden, options.seed, folder)?;

@@ -16,7 +16,9 @@ use miette::{IntoDiagnostic, Result};
 use serde::Serialize;
 use trajectories::{Program, Step};
 
-use super::heat_identified::{Compensated, Identified, compensated, identified};
+use super::heat_both::{AFTER, Cases, Compensated, kept};
+use super::heat_identified::{Identified, identified};
+use super::heat_table;
 
 /// Options of the command.
 #[derive(Args)]
@@ -24,6 +26,19 @@ pub struct Options {
     /// Axis file
     #[arg(long, value_name = "FILE", default_value = "data/axes/screw-heat.toml")]
     axis: PathBuf,
+    /// Axis file of the rows with a scale
+    #[arg(
+        long,
+        value_name = "FILE",
+        default_value = "data/axes/liu2025-machine.toml"
+    )]
+    scale: PathBuf,
+    /// Folder of rows that are done: a run that was stopped goes on
+    #[arg(long, value_name = "DIR", default_value = "runs/heat")]
+    rows: PathBuf,
+    /// Where to write the tables; not with --numerics
+    #[arg(long, value_name = "FILE", default_value = "data/outcomes/heat.md")]
+    out: PathBuf,
     /// The rows against brute force alone: neither fitted models nor both corrections
     #[arg(long)]
     numerics: bool,
@@ -31,25 +46,29 @@ pub struct Options {
 
 /// Errors of the growth at 950 mm, µm.
 #[derive(Serialize)]
-struct Row {
-    what: &'static str,
-    hours: u32,
-    greatest_um: f64,
-    in_the_end_um: f64,
+pub struct Row {
+    pub what: &'static str,
+    pub hours: u32,
+    pub greatest_um: f64,
+    pub in_the_end_um: f64,
     /// Growth in the end, by brute force.
-    growth_um: f64,
+    pub growth_um: f64,
     steps: u64,
 }
 
+/// All that was found.
 #[derive(Serialize)]
-struct Found {
-    against_brute_force: Vec<Row>,
+pub struct Found {
+    pub against_brute_force: Vec<Row>,
     /// By which the usual tolerance changes the growth over the hour, against a thousandth of it.
     tolerance_um: f64,
     /// Mean losses at 20 °C from the reference and from the simulated loop, W.
     losses_w: [f64; 2],
-    identified: Vec<Identified>,
-    compensated: Vec<Compensated>,
+    pub identified: Vec<Identified>,
+    /// Both corrections, the position from the motor.
+    pub motor: Vec<Compensated>,
+    /// The dynamic part, the position from the scale.
+    pub scale: Vec<Compensated>,
 }
 
 const PLACE: f64 = 0.95;
@@ -84,21 +103,41 @@ pub fn command(options: &Options) -> Result<()> {
         &reference,
         &brute_force(&motion, 24),
     )?);
-    let (identified, compensated) = match options.numerics {
-        true => (Vec::new(), Vec::new()),
-        false => {
-            let (rows, fitted) = identified(&model)?;
-            (rows, compensated(&axis, &fitted)?)
+    let (mut found_models, mut motor, mut scale) = (Vec::new(), Vec::new(), Vec::new());
+    if !options.numerics {
+        let (rows, fitted) = identified(&model)?;
+        found_models = rows;
+        let scaled = Axis::read(&options.scale)?;
+        let key = feed_axis::program::inputs()
+            .with("motor", &axis.fingerprint)
+            .with("scale", &scaled.fingerprint)
+            .key();
+        let tables = [
+            (Cases::of_motor(&axis, &fitted), true, &mut motor),
+            (Cases::of_scale(&scaled, &fitted), false, &mut scale),
+        ];
+        for (cases, with_growth, rows) in tables {
+            for (number, what) in cases.names().into_iter().enumerate() {
+                let name = format!("{}-{number}", if with_growth { "motor" } else { "scale" });
+                let compute = || cases.row(number, with_growth);
+                rows.push(kept(&options.rows, &name, &key, compute)?);
+                note(format!("{name}: {what}"));
+            }
         }
-    };
+    }
     let watts = |duty: &Duty| duty.friction_power().iter().sum::<f64>();
     let found = Found {
         against_brute_force: rows,
         tolerance_um: tolerance(&model, &reference)?,
         losses_w: [watts(&reference), watts(&simulated)],
-        identified,
-        compensated,
+        identified: found_models,
+        motor,
+        scale,
     };
+    if !options.numerics {
+        std::fs::write(&options.out, heat_table::page(&found)).into_diagnostic()?;
+        note(format!("{} written", options.out.display()));
+    }
     let text = words(&found);
     print("heat-proof", &Worded { text, value: found })
 }
@@ -212,34 +251,43 @@ fn words(found: &Found) -> String {
         );
         let _ = writeln!(
             text,
-            "{:<44}{:>10}{:>7}{:>8}",
+            "{:<100}{:>10}{:>7}{:>8}",
             "log", "greatest", "RMS", "of"
         );
     }
     for row in &found.identified {
         let _ = writeln!(
             text,
-            "{:<44}{:>10.1}{:>7.2}{:>8.0}",
+            "{:<100}{:>10.1}{:>7.2}{:>8.0}",
             row.log, row.greatest_um, row.rms_um, row.of_um
         );
     }
-    if !found.compensated.is_empty() {
-        let _ = writeln!(
-            text,
-            "\npeak of the table's error on a stroke there and back, motor feedback, µm"
-        );
-        let _ = writeln!(
-            text,
-            "{:<44}{:>8}{:>8}{:>8}{:>8}",
-            "after min", 0, 5, 20, 60
-        );
-    }
-    for row in &found.compensated {
-        let _ = write!(text, "{:<44}", row.what);
-        for peak in row.peaks_um {
-            let _ = write!(text, "{peak:>8.1}");
+    let tables = [
+        (
+            "peak of the table's error on strokes there and back, motor feedback, µm",
+            &found.motor,
+        ),
+        (
+            "dynamic part of it, position from a scale, µm",
+            &found.scale,
+        ),
+    ];
+    for (title, rows) in tables {
+        if rows.is_empty() {
+            continue;
+        }
+        let _ = write!(text, "\n{title}\n{:<100}", "after min");
+        for minutes in AFTER {
+            let _ = write!(text, "{minutes:>8}");
         }
         text.push('\n');
+        for row in rows {
+            let _ = write!(text, "{:<100}", row.what);
+            for peak in row.peaks_um {
+                let _ = write!(text, "{peak:>8.1}");
+            }
+            text.push('\n');
+        }
     }
     text
 }

@@ -1,53 +1,74 @@
-//! A thermal model fitted to another machine, and the table's residual error with it.
+//! Thermal models fitted to another machine, on hours that were not fitted; and the same set right by a probe.
 
-use std::sync::Arc;
-
-use axis_pipeline::strategies::{NONE, Predictors, STRATEGIES, StrategyKind};
-use axis_sim::{Axis, ClosedLoop};
 use axis_thermal::{
-    Duty, DutySample, GrowthFit, GrowthPredictor, GrowthStretch, ThermalModel, ThermalParameters,
-    ThermalUnknown,
+    Duty, DutySample, GrowthFit, GrowthLog, GrowthOf, GrowthPredictor, GrowthStretch, ThermalModel,
+    ThermalParameters, ThermalUnknown,
 };
-use independent_axis::{HeatHours, HeatedScrew, Motion, Parameters, Random, there_and_back};
-use miette::{IntoDiagnostic, Result, miette};
-use serde::Serialize;
-use trajectories::{Program, Step};
+use independent_axis::{HeatHours, HeatedScrew, Motion, Parameters, Random};
+use miette::{IntoDiagnostic, Result};
+use serde::{Deserialize, Serialize};
 
-/// A fitted model on hours that were not fitted.
-#[derive(Serialize)]
+/// A model on hours that were not fitted.
+#[derive(Clone, Deserialize, Serialize)]
 pub struct Identified {
-    pub log: &'static str,
+    pub log: String,
     pub greatest_um: f64,
     pub rms_um: f64,
     /// Greatest growth.
     pub of_um: f64,
 }
 
-/// Peak of the table's error on a stroke there and back after 0, 5, 20 and 60 minutes.
-#[derive(Serialize)]
-pub struct Compensated {
-    pub what: &'static str,
-    pub peaks_um: [f64; 4],
-}
-
 const PLACES: [f64; 5] = [0.2, 0.5, 0.8, 1.1, 1.4];
 const FIVE_MINUTES: f64 = 300.0;
 
-/// A log: its name, at which places growth is found, every how many five minutes, with which noise (m).
-type Log = (&'static str, &'static [f64], usize, f64);
-const LOGS: [Log; 3] = [
-    ("each 5 min, 5 places, noise 0.5 µm", &PLACES, 1, 0.5e-6),
-    (
-        "each 10 min, 2 places, noise 0.5 µm",
-        &[0.5, 1.1],
-        2,
-        0.5e-6,
-    ),
-    ("each 15 min, 1 place, noise 1 µm", &[1.1], 3, 1e-6),
+/// A log: at which places growth is found, every how many five minutes, with which noise (m), and with which noise
+/// (as a share) the friction's power.
+struct Log {
+    name: &'static str,
+    places: &'static [f64],
+    every: usize,
+    noise: f64,
+    friction: Option<f64>,
+}
+
+const LOGS: [Log; 4] = [
+    Log {
+        name: "each 5 min, 5 places, noise 0.5 µm",
+        places: &PLACES,
+        every: 1,
+        noise: 0.5e-6,
+        friction: None,
+    },
+    Log {
+        name: "each 10 min, 2 places, noise 0.5 µm",
+        places: &TWO,
+        every: 2,
+        noise: 0.5e-6,
+        friction: None,
+    },
+    Log {
+        name: "each 15 min, 1 place, noise 1 µm",
+        places: &[1.1],
+        every: 3,
+        noise: 1e-6,
+        friction: None,
+    },
+    Log {
+        name: "each 10 min, 2 places, noise 0.5 µm, and friction's power with noise of 0.5 %",
+        places: &TWO,
+        every: 2,
+        noise: 0.5e-6,
+        friction: Some(0.005),
+    },
 ];
 
+const TWO: [f64; 2] = [0.5, 1.1];
+
+/// How a model is set right: minutes between two probings at [`TWO`], with a noise of 0.5 µm.
+const PROBINGS: [(usize, u32); 3] = [(1, 60), (0, 60), (0, 20)];
+
 /// A name and a fitted model, or the guess.
-pub type Fitted = (&'static str, ThermalParameters);
+pub type Fitted = (String, ThermalParameters);
 
 /// Losses of a motion of the second simulator's axis from its reference, or of a standstill.
 fn duty(model: &ThermalModel, motion: Option<&Motion>) -> Duty {
@@ -90,7 +111,6 @@ fn logged(
     model: &ThermalModel,
     log: &Log,
 ) -> (Vec<GrowthStretch>, Vec<[f64; 5]>) {
-    let (_, places, every, noise) = log;
     let air = hours.air;
     let cold = air(0.0);
     let mut machine = HeatedScrew::other(cold);
@@ -99,18 +119,22 @@ fn logged(
     for (motion, count) in &hours.duties {
         let duty = duty(model, motion.as_ref());
         for _ in 0..*count {
-            let from = machine.time;
+            let (from, spent) = (machine.time, machine.friction_heat);
             machine.run(motion.as_ref(), FIVE_MINUTES, air);
-            let probed = (stretches.len() + 1) % every == 0;
-            let probe = |x: &f64| [*x, machine.growth(cold, *x) + noise * random.normal()];
+            let probed = (stretches.len() + 1) % log.every == 0;
+            let probe = |x: &f64| [*x, machine.growth(cold, *x) + log.noise * random.normal()];
             stretches.push(GrowthStretch {
                 duty: duty.clone(),
                 duration: FIVE_MINUTES,
                 air: [air(from), air(machine.time)],
                 found: match probed {
-                    true => places.iter().map(probe).collect(),
+                    true => log.places.iter().map(probe).collect(),
                     false => Vec::new(),
                 },
+                friction: log.friction.map(|noise| {
+                    let power = (machine.friction_heat - spent) / FIVE_MINUTES;
+                    power * (1.0 + noise * random.normal())
+                }),
             });
             truth.push(PLACES.map(|x| machine.growth(cold, x)));
         }
@@ -125,34 +149,52 @@ pub fn identified(model: &ThermalModel) -> Result<(Vec<Identified>, Vec<Fitted>)
         screw.segments = 30;
     }
     let coarse = ThermalModel::new(assumed.clone()).into_diagnostic()?;
-    let none: Log = ("", &[], 1, 0.0);
+    let none = Log {
+        name: "",
+        places: &[],
+        every: 1,
+        noise: 0.0,
+        friction: None,
+    };
     let (check, truth) = logged(&HeatHours::to_check(), &coarse, &none);
-    let mut fitted: Vec<Fitted> = vec![("first guess", assumed.clone())];
+    let mut fitted: Vec<Fitted> = vec![("the assumed numbers".to_owned(), assumed.clone())];
     for log in &LOGS {
         let (stretches, _) = logged(&HeatHours::to_fit(), &coarse, log);
-        let fit = assumed.fit(&stretches, &ThermalUnknown::ALL, &GrowthFit::default());
-        fitted.push((log.0, fit.into_diagnostic()?.parameters));
+        let logs = [GrowthLog {
+            stretches,
+            ..GrowthLog::default()
+        }];
+        let fit = assumed.fit(&logs, &ThermalUnknown::ALL, &GrowthFit::default());
+        fitted.push((log.name.to_owned(), fit.into_diagnostic()?.parameters));
     }
-    let row = |(log, parameters): &Fitted| checked(log, parameters, &check, &truth);
-    let rows: Result<_> = fitted.iter().map(row).collect();
-    Ok((rows?, fitted))
+    let row = |(log, parameters): &Fitted| checked(log, parameters, &check, &truth, None);
+    let mut rows: Vec<Identified> = fitted.iter().map(row).collect::<Result<_>>()?;
+    for (model, minutes) in PROBINGS {
+        let (name, parameters) = &fitted[model];
+        let name = format!("{name}; and 2 places probed each {minutes} min");
+        rows.push(checked(&name, parameters, &check, &truth, Some(minutes))?);
+    }
+    Ok((rows, fitted))
 }
 
 fn checked(
-    log: &'static str,
+    log: &str,
     parameters: &ThermalParameters,
     check: &[GrowthStretch],
     truth: &[[f64; 5]],
+    probed: Option<u32>,
 ) -> Result<Identified> {
     let model = ThermalModel::new(parameters.clone()).into_diagnostic()?;
     let first = check.first().map_or(20.0, |stretch| stretch.air[0]);
     let mut predictor = GrowthPredictor::new(model, first, 60.0).into_diagnostic()?;
+    let mut random = Random::new(11, 3);
     let (mut worst, mut squares, mut most, mut count) = (0.0_f64, 0.0, 0.0_f64, 0.0);
-    for (stretch, truth) in check.iter().zip(truth) {
+    for (number, (stretch, truth)) in check.iter().zip(truth).enumerate() {
         let (begun, [from, to]) = (predictor.state().time, stretch.air);
         let air = |t: f64| from + (to - from) * (t - begun) / stretch.duration;
         let advanced = predictor.advance(&stretch.duty, stretch.duration, air);
         advanced.into_diagnostic()?;
+        // Before it is probed: the longest since the last probing.
         for (x, growth) in PLACES.iter().zip(truth) {
             let error = 1e6 * (predictor.growth_at_end(*x).screw - growth);
             worst = worst.max(error.abs());
@@ -160,129 +202,17 @@ fn checked(
             count += 1.0;
             most = most.max(1e6 * growth);
         }
+        let now = 5 * (number as u32 + 1);
+        if probed.is_some_and(|each| now % each == 0) {
+            let read = [1, 3].map(|i| [PLACES[i], truth[i] + 0.5e-6 * random.normal()]);
+            let set = predictor.probed(GrowthOf::Screw, &read);
+            set.into_diagnostic()?;
+        }
     }
     Ok(Identified {
-        log,
+        log: log.to_owned(),
         greatest_um: worst,
         rms_um: f64::sqrt(squares / count),
         of_um: most,
     })
-}
-
-/// What a stroke is run with: the name, the strategy, whether growth is taken from the reference, and whether
-/// the strategy's friction follows the temperature.
-type Case = (&'static str, &'static StrategyKind, bool, bool);
-
-/// Minutes of the duty before each stroke.
-const AFTER: [f64; 4] = [0.0, 5.0, 20.0, 60.0];
-
-/// The table's error after minutes of the duty, with the first guess and the fitted models.
-pub fn compensated(axis: &Axis, fitted: &[Fitted]) -> Result<Vec<Compensated>> {
-    let plan = STRATEGIES.iter().find(|kind| kind.name == "plan");
-    let plan = *plan.ok_or_else(|| miette!("there is no strategy \"plan\""))?;
-    let models = fitted.iter().map(|(name, p)| (*name, p));
-    let best = fitted.get(1).or(fitted.first());
-    let (_, best) = best.ok_or_else(|| miette!("there is no model"))?;
-    let cases: [Case; 4] = [
-        ("none", &NONE, false, false),
-        ("plan alone", plan, false, false),
-        ("growth alone", &NONE, true, false),
-        ("both, friction of the cold axis", plan, true, false),
-    ];
-    let mut rows = Vec::new();
-    for case in &cases {
-        rows.push(one(axis, best, case, HeatedScrew::other(20.0))?);
-    }
-    for (name, model) in models {
-        rows.push(one(
-            axis,
-            model,
-            &(name, plan, true, true),
-            HeatedScrew::other(20.0),
-        )?);
-    }
-    // A machine of the model's own numbers and laws, by brute force.
-    let own = axis.thermal_parameters();
-    let case = ("exact numbers and laws", plan, true, true);
-    rows.push(one(axis, &own, &case, HeatedScrew::assumed(20.0))?);
-    Ok(rows)
-}
-
-fn one(
-    axis: &Axis,
-    parameters: &ThermalParameters,
-    case: &Case,
-    mut machine: HeatedScrew,
-) -> Result<Compensated> {
-    let (what, strategy, takes_growth, follows) = *case;
-    let model = ThermalModel::new(parameters.clone()).into_diagnostic()?;
-    let motion = there_and_back(0.45, 0.95, 0.2, 1.0);
-    let duty = duty(&model, Some(&motion));
-    let mut predictor = GrowthPredictor::new(model, 20.0, 60.0).into_diagnostic()?;
-    let mut peaks_um = [0.0; 4];
-    for (peak, minutes) in peaks_um.iter_mut().zip(AFTER) {
-        let more = 60.0 * minutes - machine.time;
-        if more > 0.0 {
-            machine.run(Some(&motion), more, |_| 20.0);
-            let advanced = predictor.advance(&duty, more, |_| 20.0);
-            advanced.into_diagnostic()?;
-        }
-        let plant = warm(axis, machine.friction_factors(0.7))?;
-        let assumed = match follows {
-            true => warm(axis, predictor.friction_factors())?,
-            false => axis.clone(),
-        };
-        let left = |x: f64| {
-            let predicted = match takes_growth {
-                true => predictor.growth_at_end(x).screw,
-                false => 0.0,
-            };
-            predicted - machine.growth(20.0, x)
-        };
-        *peak = stroke(&plant, &assumed, strategy, left)?;
-    }
-    Ok(Compensated { what, peaks_um })
-}
-
-/// The axis with its dry and viscous friction times these factors.
-fn warm(axis: &Axis, [dry, viscous]: [f64; 2]) -> Result<Axis> {
-    let mut axis = axis.clone();
-    let changed = axis.friction.change(|values| {
-        for key in ["coulomb", "stiction"] {
-            values.scale(key, dry);
-        }
-        values.scale("viscous", viscous);
-    });
-    changed.into_diagnostic()?;
-    Ok(axis)
-}
-
-/// Peak of the table's error on the stroke there and back, µm: the loop's, and the growth that is `left` at each
-/// position by superposition.
-fn stroke(
-    plant: &Axis,
-    assumed: &Axis,
-    strategy: &'static StrategyKind,
-    left: impl Fn(f64) -> f64,
-) -> Result<f64> {
-    let spec = plant.trajectories.first();
-    let spec = spec.ok_or_else(|| miette!("the axis file has no trajectory"))?;
-    let start = plant.stroke.start;
-    let to = |to: f64| Step::Move {
-        to,
-        limits: spec.limits,
-    };
-    let rest = Step::Dwell { duration: 1.0 };
-    let steps = vec![to(start + spec.displacement), rest, to(start)];
-    let motion = Arc::new(Program::new(start, steps).into_diagnostic()?);
-    let law = strategy.compensator(&Predictors::of(assumed), motion.clone());
-    let mut law = law.into_diagnostic()?;
-    let mut peak = 0.0_f64;
-    let closed_loop = ClosedLoop::new(plant).into_diagnostic()?;
-    let outcome = closed_loop.run(&*motion, &mut *law, |cycle| {
-        let error = cycle.error() + left(cycle.position);
-        peak = peak.max(1e6 * error.abs());
-    });
-    outcome.completed().into_diagnostic()?;
-    Ok(peak)
 }

@@ -32,6 +32,7 @@ use compensator::{Compensator, Correction, Homed, LearnedMove, Sample};
 use trajectories::Motion;
 
 use crate::PipelineError;
+use crate::heat::HeatAhead;
 use crate::residuals::AnyLearner;
 pub use cycle_law::{CYCLE_BY_CYCLE, CycleLaw, PositionLaw, StreamedPlan};
 pub use drive_terms::reversal_start;
@@ -100,6 +101,11 @@ pub trait Strategy {
         &mut self,
         next: &NextMove,
     ) -> Result<Box<dyn Compensator + Send>, PipelineError>;
+
+    /// Says how the axis is predicted to be warm along the coming moves, until it is said again: a strategy that
+    /// plans subtracts the growth from the reference and plans with the friction of that temperature. None: as
+    /// its model is.
+    fn warmed(&mut self, _heat: Option<Arc<HeatAhead>>) {}
 
     /// Learns from what a controller logged in the move that is over; what it knows now.
     ///

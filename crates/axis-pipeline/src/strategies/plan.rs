@@ -9,6 +9,7 @@ use compensator::{
 
 use super::{Build, NextMove, ReportTable, Strategy, StrategyKind};
 use crate::PipelineError;
+use crate::heat::HeatAhead;
 
 pub(super) static KIND: StrategyKind = StrategyKind {
     name: "plan",
@@ -21,6 +22,7 @@ pub(super) static KIND: StrategyKind = StrategyKind {
         Ok(Box::new(Planning {
             model: predictors.assumed_model()?,
             left: Left::default(),
+            heat: None,
         }))
     }),
 };
@@ -28,6 +30,7 @@ pub(super) static KIND: StrategyKind = StrategyKind {
 struct Planning {
     model: DriveModel,
     left: Left,
+    heat: Option<Arc<HeatAhead>>,
 }
 
 impl Strategy for Planning {
@@ -35,8 +38,12 @@ impl Strategy for Planning {
         &mut self,
         next: &NextMove,
     ) -> Result<Box<dyn Compensator + Send>, PipelineError> {
-        let plan = plan(&self.model, next, &self.left)?;
+        let plan = plan(&self.model, next, &self.left, self.heat.clone())?;
         Ok(Box::new(self.left.watching(plan, |plan| plan.planned())))
+    }
+
+    fn warmed(&mut self, heat: Option<Arc<HeatAhead>>) {
+        self.heat = heat;
     }
 }
 
@@ -94,26 +101,34 @@ impl<C: Compensator> Compensator for Watching<C> {
     }
 }
 
-/// The plan of a move.
+/// The plan of a move; `heat` says how the axis grows along it, and how its friction falls.
 pub(super) fn plan(
     model: &DriveModel,
     next: &NextMove,
     left: &Left,
+    heat: Option<Arc<HeatAhead>>,
 ) -> Result<Plan<impl FnMut(usize) -> Target + use<>>, PipelineError> {
     let (motion, learned) = (next.motion.clone(), next.learned.clone());
     let period = model.period;
     let target = move |cycle: usize| {
-        let at = motion.at(cycle as f64 * period);
-        Target {
-            reference: Reference {
-                position: at.position,
-                velocity: at.velocity,
-                acceleration: at.acceleration,
-            },
-            shift: learned
-                .as_ref()
-                .map_or_else(Reference::default, |l| l.at(cycle)),
+        let time = cycle as f64 * period;
+        let at = motion.at(time);
+        let reference = Reference {
+            position: at.position,
+            velocity: at.velocity,
+            acceleration: at.acceleration,
+        };
+        let shift = learned
+            .as_ref()
+            .map_or_else(Reference::default, |l| l.at(cycle));
+        let target = Target {
+            reference,
+            shift,
             ..Target::default()
+        };
+        match &heat {
+            None => target,
+            Some(heat) => heat.on(time, target),
         }
     };
     let plan = Plan::new(model, &PlanSettings::default(), target)?;

@@ -19,6 +19,7 @@ use trajectories::Motion;
 use super::feedback_helps;
 use super::plan::{Left, plan};
 use super::{DesignOnce, LearnedValues, NextMove, Predictors, SharedMotion, Strategy};
+use crate::heat::HeatAhead;
 use crate::residuals::{AnyLearner, AnyResidual};
 
 use crate::{ErrorUnit, NoFeedback, PipelineError};
@@ -51,6 +52,7 @@ pub(super) struct PlanStrategy {
     /// Which of them runs now.
     now: Option<usize>,
     left: Left,
+    heat: Option<Arc<HeatAhead>>,
 }
 
 /// Learned forces that no parameter describes, and the parameters adapted together with them.
@@ -93,6 +95,7 @@ impl PlanStrategy {
             repeated: Vec::new(),
             now: None,
             left: Left::default(),
+            heat: None,
         }
         .with_learner(options.residual.then(tables));
         if options.feedback {
@@ -263,12 +266,21 @@ impl Strategy for PlanStrategy {
             }
             self.now = Some(now);
         }
-        let plan = plan(&model, &next, &self.left)?.with_residual(residual);
+        // An adapted model has learned its friction at the temperature of now.
+        let heat = self.heat.clone().map(|heat| match self.adaptation {
+            Some(_) => Arc::new(heat.growth_alone()),
+            None => heat,
+        });
+        let plan = plan(&model, &next, &self.left, heat)?.with_residual(residual);
         if !self.options.feedback {
             return Ok(Box::new(self.left.watching(plan, |plan| plan.planned())));
         }
         let law = PlanWithFeedback::new(plan, self.feedback(&model)?);
         Ok(Box::new(self.left.watching(law, |law| law.planned())))
+    }
+
+    fn warmed(&mut self, heat: Option<Arc<HeatAhead>>) {
+        self.heat = heat;
     }
 
     fn learn(&mut self, record: &[Sample]) -> Result<LearnedValues, PipelineError> {

@@ -14,7 +14,7 @@
 
 use axis_thermal::{Duty, DutySample, ThermalModel};
 use lugre::LuGre;
-use trajectories::Motion;
+use trajectories::{Motion, Setpoint};
 
 use crate::axis::Axis;
 use crate::cycle::Cycle;
@@ -74,16 +74,31 @@ impl LossModel {
 
     /// Adds a motion's losses to `duty`, from its reference alone.
     pub fn add_motion<M: Motion + ?Sized>(&self, duty: &mut Duty, axis: &Axis, motion: &M) {
-        let whole = motion.duration();
+        self.add_part(duty, axis, motion, [0.0, motion.duration()]);
+    }
+
+    /// The same of the motion's part between two times, s.
+    pub fn add_part<M: Motion + ?Sized>(
+        &self,
+        duty: &mut Duty,
+        axis: &Axis,
+        motion: &M,
+        [from, to]: [f64; 2],
+    ) {
+        let whole = to - from;
         let count = (whole / INTERVAL).ceil().clamp(1.0, MOST_SAMPLES);
         let step = whole / count;
         for k in 0..count as u32 {
-            let at = motion.at((f64::from(k) + 0.5) * step);
-            let load = axis.load_at(at.position) * self.travel;
-            let inertia = self.inertia * at.acceleration / self.travel;
-            let sample = self.sample(step, at.position, at.velocity, |_| inertia + load);
-            duty.push(&sample);
+            let at = motion.at(from + (f64::from(k) + 0.5) * step);
+            duty.push(&self.set_point(axis, step, &at));
         }
+    }
+
+    /// A stretch of `duration` seconds at one set point of the reference.
+    pub fn set_point(&self, axis: &Axis, duration: f64, at: &Setpoint) -> DutySample {
+        let load = axis.load_at(at.position) * self.travel;
+        let inertia = self.inertia * at.acceleration / self.travel;
+        self.sample(duration, at.position, at.velocity, |_| inertia + load)
     }
 
     /// Adds a control cycle of `period` seconds as it was simulated.

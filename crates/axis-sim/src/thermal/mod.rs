@@ -6,14 +6,15 @@
 
 mod keys;
 mod losses;
+mod numbers;
 
 pub use losses::LossModel;
 
 pub(crate) use keys::{THERMAL_KEYS, is_of_screws};
 
-use axis_thermal::{
-    ScrewEnds, TemperatureLaw, ThermalError, ThermalModel, ThermalParameters, ThermalScrew,
-};
+use axis_thermal::{ScrewEnds, ThermalError, ThermalModel, ThermalParameters, ThermalScrew};
+
+use numbers::NUMBERS;
 
 use crate::axis::Axis;
 use crate::mechanism::{Freedom, ScrewShape};
@@ -45,6 +46,20 @@ impl Axis {
             .count()
     }
 
+    /// The keys of `[thermal]` under which other numbers than this axis' differ from its own, in the order of
+    /// the file: each with its unit, and the value in that unit. Together they make an axis file of those numbers;
+    /// what no key states (lengths, the number of segments, loss of the winding) is not among them.
+    pub fn thermal_keys_of(&self, other: &ThermalParameters) -> Vec<(String, f64)> {
+        let own = spelt(&self.thermal_parameters());
+        let other = spelt(other).into_iter();
+        other.filter(|number| !own.contains(number)).collect()
+    }
+
+    /// All numbers of this axis as [`Axis::thermal_keys_of`] has them.
+    pub fn thermal_keys(&self) -> Vec<(String, f64)> {
+        spelt(&self.thermal_parameters())
+    }
+
     /// The numbers of [`Axis::thermal_model`].
     pub fn thermal_parameters(&self) -> ThermalParameters {
         let v = &self.thermal;
@@ -67,28 +82,41 @@ impl Axis {
         if let Some(constant) = v.optional("motor_constant") {
             p.winding.per_torque_squared = 1.0 / (constant * constant);
         }
-        stated(v, &mut p);
+        for (name, number) in NUMBERS {
+            // A law that no key states stays as it is.
+            if let Some(value) = v.optional(name)
+                && let Some(number) = number(&mut p)
+            {
+                *number = value;
+            }
+        }
         p
     }
 }
 
+/// Numbers as keys of the file.
+fn spelt(numbers: &ThermalParameters) -> Vec<(String, f64)> {
+    let mut numbers = numbers.clone();
+    let one = |(name, number): &(&'static str, numbers::Number)| {
+        let value = *number(&mut numbers)?;
+        let key = THERMAL_KEYS.iter().find(|key| key.name == *name)?;
+        Some(match key.units().first() {
+            Some((unit, factor)) => (format!("{name}_{unit}"), value / factor),
+            None => ((*name).to_owned(), value),
+        })
+    };
+    NUMBERS.iter().filter_map(one).collect()
+}
+
 fn screw(v: &Values, shape: &ScrewShape) -> ThermalScrew {
     let assumed = ThermalScrew::default();
-    let mut air = assumed.air;
-    air.still = v.or("screw_still_air", air.still);
-    air.turning = v.or("screw_turning_air", air.turning);
     let segments = v.optional_count("screw_segments").map(|n| n as usize);
     ThermalScrew {
         length: shape.length,
-        diameter: v.or("screw_diameter", shape.diameter),
+        diameter: shape.diameter,
         density: shape.density,
-        specific_heat: v.or("screw_specific_heat", assumed.specific_heat),
-        conductivity: v.or("screw_conductivity", assumed.conductivity),
-        expansion: v.or("screw_expansion", assumed.expansion),
-        shaft: v.or("screw_shaft", assumed.shaft),
-        nut_length: v.or("screw_nut_length", assumed.nut_length.min(shape.length)),
+        nut_length: assumed.nut_length.min(shape.length),
         segments: segments.unwrap_or(assumed.segments),
-        air,
         ends: match shape.held_at_both_ends {
             None => ScrewEnds::OneFixed,
             Some(bearing_stiffness) => ScrewEnds::BothFixed {
@@ -97,60 +125,8 @@ fn screw(v: &Values, shape: &ScrewShape) -> ThermalScrew {
                 pretension: v.or("screw_pretension", 0.0),
             },
         },
+        ..assumed
     }
-}
-
-/// What the file states, besides the screw.
-fn stated(v: &Values, p: &mut ThermalParameters) {
-    let set = |name: &str, to: &mut f64| *to = v.or(name, *to);
-    set("reference_temperature", &mut p.reference_temperature);
-    set("resistance_rise", &mut p.winding.resistance_per_kelvin);
-    let s = &mut p.shares;
-    set("nut_dry_share", &mut s.nut.dry);
-    set("nut_viscous_share", &mut s.nut.viscous);
-    set("bearings_dry_share", &mut s.bearings.dry);
-    set("bearings_viscous_share", &mut s.bearings.viscous);
-    set("front_of_bearings", &mut s.front_of_bearings);
-    set("nut_into_screw", &mut s.nut_into_screw);
-    set("guide_into_table", &mut s.guide_into_table);
-    if let Some(per_kelvin) = v.optional("viscous_fall") {
-        p.friction.viscous = TemperatureLaw::Exponential { per_kelvin };
-    }
-    if let Some(per_kelvin) = v.optional("dry_fall") {
-        p.friction.dry = TemperatureLaw::Linear { per_kelvin };
-    }
-    set("preload_rise", &mut p.friction.preload_per_kelvin);
-    let b = &mut p.bodies;
-    set("winding_capacity", &mut b.winding.capacity);
-    set("housing_capacity", &mut b.housing.capacity);
-    set("housing_to_air", &mut b.housing.to_air);
-    set("front_bearing_capacity", &mut b.front_bearing.capacity);
-    set("rear_bearing_capacity", &mut b.rear_bearing.capacity);
-    set("nut_capacity", &mut b.nut.capacity);
-    set("nut_to_air", &mut b.nut.to_air);
-    set("table_capacity", &mut b.table.capacity);
-    set("table_to_air", &mut b.table.to_air);
-    set("bed_capacity", &mut b.bed.capacity);
-    set("bed_to_air", &mut b.bed.to_air);
-    set("scale_capacity", &mut b.scale.capacity);
-    set("scale_to_air", &mut b.scale.to_air);
-    let l = &mut p.links;
-    set("winding_to_housing", &mut l.winding_to_housing);
-    set("housing_to_front_bearing", &mut l.housing_to_front_bearing);
-    set("housing_to_table", &mut l.housing_to_table);
-    set("housing_to_bed", &mut l.housing_to_bed);
-    set("front_bearing_to_bed", &mut l.front_bearing_to_bed);
-    set("rear_bearing_to_bed", &mut l.rear_bearing_to_bed);
-    set("front_bearing_to_screw", &mut l.front_bearing_to_screw);
-    set("rear_bearing_to_screw", &mut l.rear_bearing_to_screw);
-    set("nut_to_screw", &mut l.nut_to_screw);
-    set("nut_to_table", &mut l.nut_to_table);
-    set("table_to_bed", &mut l.table_to_bed);
-    set("scale_to_bed", &mut l.scale_to_bed);
-    let e = &mut p.expansion;
-    set("scale_expansion", &mut e.scale);
-    set("scale_fixed_at", &mut e.scale_fixed_at);
-    set("bed_expansion", &mut e.bed);
 }
 
 #[cfg(test)]
@@ -175,6 +151,35 @@ mod tests {
             }
             assert_ne!(other.thermal_parameters(), before, "{}", key.name);
             assert!(PAGE.contains(&format!("`{}`", key.name)), "{}", key.name);
+        }
+    }
+
+    /// Numbers of another model as keys, and the file with these keys as that model.
+    #[test]
+    fn keys_of_other_numbers_make_a_file_of_them() {
+        let axis = Axis::parse("axis.toml", AXIS).unwrap();
+        assert!(axis.thermal_keys_of(&axis.thermal_parameters()).is_empty());
+        let mut other = axis.thermal_parameters();
+        for (i, (_, number)) in NUMBERS.iter().enumerate() {
+            if let Some(number) = number(&mut other) {
+                *number *= 1.0 + 0.001 * i as f64;
+            }
+        }
+        let keys = axis.thermal_keys_of(&other);
+        assert!(keys.len() > 35, "{}", keys.len());
+        let lines: String = keys
+            .iter()
+            .map(|(key, v)| format!("{key} = {v:?}\n"))
+            .collect();
+        let again = Axis::parse("axis.toml", &format!("{AXIS}\n[thermal]\n{lines}")).unwrap();
+        let mut found = again.thermal_parameters();
+        for (name, number) in NUMBERS {
+            let (a, b) = (
+                number(&mut found).map(|v| *v),
+                number(&mut other).map(|v| *v),
+            );
+            let (Some(a), Some(b)) = (a, b) else { continue };
+            assert!((a - b).abs() <= 1e-12 * b.abs(), "{name}: {a} {b}");
         }
     }
 }

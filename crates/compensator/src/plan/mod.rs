@@ -28,12 +28,12 @@ mod actuator;
 mod known;
 mod smoothing;
 
-use lugre::Exponential;
+use lugre::{Exponential, LuGre};
 
 pub use known::Plan;
 
 use crate::error::{require, within};
-use crate::model::{DriveModel, MOST_DELAY};
+use crate::model::{DriveModel, MOST_DELAY, warmed};
 use crate::residual::{Residual, ResidualAt, ResidualModel};
 use crate::{CompensatorError, Correction, Reference};
 use actuator::Inverse;
@@ -64,6 +64,9 @@ pub struct Target<T = f64> {
     pub shift: Reference<T>,
     /// Force against the load that the model does not have, N.
     pub force: T,
+    /// Dry and viscous friction at the temperature of then, as multiples of the model's; as at the set point
+    /// before if that is not stated, and the model's at first.
+    pub friction: Option<[T; 2]>,
 }
 
 impl<T: Exponential> Target<T> {
@@ -181,6 +184,10 @@ const WOUND: usize = MOST_DELAY + 2;
 #[derive(Clone, Debug)]
 pub struct Planner<T = f64, R = ResidualModel<T>> {
     model: DriveModel<T>,
+    /// Friction of the model as it was given.
+    cold: LuGre<T>,
+    /// Dry and viscous friction now, as multiples of that.
+    warm: [T; 2],
     half: usize,
     /// Cycles by which a command and the voltage made of it come late, whole.
     late: usize,
@@ -232,6 +239,8 @@ impl<T: Exponential> Planner<T> {
         let whole = cycles.floor();
         let mut planner = Self {
             model: *model,
+            cold: model.friction,
+            warm: [T::ONE; 2],
             half,
             late: whole.to_f64() as usize,
             late_part: cycles - whole,
@@ -259,6 +268,8 @@ impl<T: Exponential> Planner<T> {
     pub fn with_residual<R: Residual<T>>(self, residual: Option<R>) -> Planner<T, R> {
         Planner {
             model: self.model,
+            cold: self.cold,
+            warm: self.warm,
             half: self.half,
             late: self.late,
             late_part: self.late_part,
@@ -427,8 +438,22 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
         Some(self.cycle(&ago(late + 1), [&ago(1), &newest]))
     }
 
+    /// Takes friction as it is at another temperature. Factors that make no law leave it as it is.
+    fn warm(&mut self, factors: [T; 2]) {
+        if factors == self.warm {
+            return;
+        }
+        if let Ok(friction) = warmed(&self.cold, factors) {
+            self.model.friction = friction;
+            self.warm = factors;
+        }
+    }
+
     /// Force and raw wind-up at a set point.
     fn forces(&mut self, target: Target<T>) -> (Ahead<T>, T) {
+        if let Some(factors) = target.friction {
+            self.warm(factors);
+        }
         let m = &self.model;
         let r = &target.reference;
         let speed = r.velocity / m.lever;

@@ -205,6 +205,79 @@ class Axis:
         >>> curve = axis.analyse()["curves"][0]
         >>> response = np.array(curve["compliance"]) @ [1, 1j]
         """
+    def heat(
+        self,
+        motion: _Motion | None = None,
+        *,
+        duration_s: float = 3600.0,
+        air_degc: float = 20.0,
+        at_m: Sequence[float] | None = None,
+        losses: Literal["reference", "simulation"] = "reference",
+    ) -> dict[str, Any]:
+        """Hours of a duty: temperatures, growth by position, friction and losses over time, by the file's `[thermal]`; what it leaves out is assumed.
+
+        - `motion`: the duty, repeated without end; the file's first trajectory there and back, with standstills of 1 s, if left out.
+        - `air_degc`: temperature of the air, and of the whole axis at the start.
+        - `at_m`: positions of the table; five over the stroke if left out.
+        - `losses`: from the reference alone, or from the motion simulated once in closed loop.
+
+        Keys are those of `feed-axis heat --format json`: `time_min`, `nodes`, `places`, `loss_w`, `dry_factor`, `viscous_factor` and others.
+
+        Raises MotionError, SimulationError.
+
+        >>> hour = axis.heat(duration_s=3600, at_m=[0.95])
+        >>> hour["places"][0]["screw_um"][-1]
+        """
+    def fit_heat(
+        self,
+        logs: _Log | Sequence[_Log],
+        *,
+        duties: Sequence[_Motion] | None = None,
+        air_degc: float = 20.0,
+        held_out: float = 0.25,
+        probe_against: Literal["bearing", "bed"] = "bearing",
+        probe_zero: Literal["begin", "first"] = "begin",
+    ) -> tuple[Axis, dict[str, Any]]:
+        """Fits the thermal model of a screw to logs of hours: the axis with the fitted `[thermal]`, and how well it predicts what was held out.
+
+        - `logs`: a log or a list of them, each begun cold: paths, frames or dicts with the channels of `feed-axis heat --fit`
+          (`t_s`; `duty_1` or `position_ref_m`; `place_m` and `growth_m`, or `position_m` and `motor_angle_rad`).
+        - `duties`: motions that `duty_1` counts from 1.
+        - `held_out`: last share of each log that is predicted, not fitted.
+        - `probe_against`: what a probe reads growth against: the bed at the front bearing, or at the same position.
+        - `probe_zero`: whether readings count from the log's begin or from the first at each position.
+
+        Raises LogError, MotionError.
+
+        >>> fitted, found = axis.fit_heat("data/heat/probed.csv", duties=duties)
+        >>> found["fitted_numbers"]["greatest_um"]
+        """
+    def predict_growth(
+        self,
+        log: _Log,
+        *,
+        duties: Sequence[_Motion] | None = None,
+        air_degc: float = 20.0,
+        at_m: Sequence[float] | None = None,
+        homed_s: float = 0.0,
+        probe_each_s: float | None = None,
+        probe_against: Literal["bearing", "bed"] = "bearing",
+        probe_zero: Literal["begin", "first"] = "begin",
+    ) -> dict[str, Any]:
+        """Growth of the screw along a log of hours, from its reference alone, as a controller predicts it.
+
+        - `at_m`: positions at which it is predicted.
+        - `homed_s`: when the axis was homed, after the log's begin; growth counts from then.
+        - `probe_each_s`: the readings of the log so far apart set the prediction right; the others check it.
+
+        Other options as of `fit_heat`. Keys: the arrays `t_s`, `dry_factor`, `viscous_factor`, `growth_m` (at the reference, if the log has one),
+        a list of arrays `growth_at_m`, and `figures` (errors of the readings).
+
+        Raises LogError, MotionError.
+
+        >>> along = fitted.predict_growth(log, at_m=[0.95])
+        >>> corrected = reference - along["growth_m"]
+        """
     def check(self, *, motion: _Motion | None = None, logs: _Log | Sequence[_Log] | None = None) -> list[dict[str, Any]]:
         """What a duty asks of the axis' parts, beside what the `[rating]` of its file allows: an item a dict.
 

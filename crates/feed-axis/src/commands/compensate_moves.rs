@@ -15,6 +15,7 @@ use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result};
 use serde::Serialize;
 
+use super::compensate_warm;
 use super::motions::{program_on, trajectory};
 use super::simulate::{EXACT, NOISE, closed_loop, factor};
 use super::validate;
@@ -52,6 +53,8 @@ pub struct Options {
     noise: f64,
     #[arg(long, help = EXACT, requires = "strategy")]
     exact: bool,
+    #[command(flatten)]
+    warm: compensate_warm::Options,
     /// Where to write the moves' errors, and what was learned, as JSON
     #[arg(long, value_name = "FILE", requires = "strategy", value_parser = out_file::file())]
     json: Option<PathBuf>,
@@ -109,6 +112,17 @@ pub fn run(context: &Context, options: &Options, kind: &'static StrategyKind) ->
     let predictors = validate::predictors(context, kind.needs)?;
     // Refused before anything is computed.
     kind.strategy(&predictors).into_diagnostic()?;
+    if options.warm.is_asked() {
+        let run = compensate_warm::Run {
+            context,
+            kind,
+            predictors: &predictors,
+            motions: &motions,
+            noise: options.noise,
+            json: options.json.as_deref(),
+        };
+        return run.command(&options.warm, options.exact);
+    }
     let closed_loop = closed_loop(&context.machine, options.exact)?;
     let progress = bar("compensate", 2 * motions.len() as u64);
     let made = |kind| -> Made {

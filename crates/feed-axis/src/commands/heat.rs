@@ -14,6 +14,7 @@ use trajectories::{Motion, Program, Step};
 use super::heat_time::time;
 use super::heat_words::{Heated, HeatedNode, HeatedPlace};
 use super::motions::{listed, program_on};
+use super::{heat_fit, heat_predict, heat_slow};
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
 use crate::exit::wrong_use;
 use crate::out_file;
@@ -68,6 +69,8 @@ pub struct Options {
     /// Where the losses come from
     #[arg(long, value_enum, default_value_t = LossesFrom::Reference)]
     losses: LossesFrom,
+    #[command(flatten)]
+    slow: heat_slow::Options,
     /// Where to write a page: temperatures, growth and losses over time
     #[arg(long, value_name = "OUT.html", value_parser = out_file::page())]
     report: Option<PathBuf>,
@@ -88,11 +91,20 @@ const INTERVALS: u32 = 240;
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
     let axis = options.axis()?;
+    if options.slow.is_asked() {
+        return options.slow_logs(&axis);
+    }
     let motion = options.motion(&axis)?;
-    let places = options.places(&axis)?;
-    let model = axis.thermal_model().into_diagnostic()?;
-    let duty = options.duty(&axis, &model, &motion)?;
-    let heated = options.run(&axis, &model, &duty, &places)?;
+    let run = HeatRun {
+        motion: &motion,
+        name: options.name(),
+        duration: options.duration,
+        air: options.air,
+        places: options.places(&axis)?,
+        is_simulated: options.losses == LossesFrom::Simulation,
+    };
+    let mut heated = run.on(&axis)?;
+    heated.report = options.report.clone();
     if let Some(path) = &options.report {
         axis_report::write_atomic(path, &heat_page::page(&heated)).into_diagnostic()?;
     }
@@ -100,6 +112,32 @@ pub fn command(options: &Options) -> Result<()> {
 }
 
 impl Options {
+    /// Fits or predicts logs of hours.
+    fn slow_logs(&self, axis: &Axis) -> Result<()> {
+        let duties = self.slow.programs(axis, || self.motion(axis))?;
+        match &self.slow.predict {
+            Some(file) => {
+                let given = heat_predict::Given {
+                    axis,
+                    duties: &duties,
+                    air: self.air,
+                    places: self.places(axis)?,
+                };
+                heat_predict::command(&given, &self.slow, file)
+            }
+            None => {
+                let given = heat_fit::Given {
+                    axis,
+                    file: &self.axis,
+                    set: &self.set,
+                    duties: &duties,
+                    air: self.air,
+                };
+                heat_fit::command(&given, &self.slow)
+            }
+        }
+    }
+
     fn axis(&self) -> Result<Axis> {
         if self.set.is_empty() {
             return read_axis(&self.axis);
@@ -131,63 +169,86 @@ impl Options {
         program.into_diagnostic().wrap_err("--dwell")
     }
 
+    /// What the motion is called.
+    fn name(&self) -> String {
+        match &self.program {
+            Some(file) => file.display().to_string(),
+            None => format!(
+                "trajectory {} there and back, standstills of {} s",
+                self.trajectory,
+                SixDigits(self.dwell)
+            ),
+        }
+    }
+
     fn places(&self, axis: &Axis) -> Result<Vec<f64>> {
-        let stroke = &axis.stroke;
-        if axis.freedom() == Freedom::Rotary {
-            return match self.at.is_empty() {
-                true => Ok(Vec::new()),
-                false => Err(wrong_use(
-                    "--at: the load of this axis turns, and growth is along lines alone".to_owned(),
-                )),
-            };
-        }
-        if self.at.is_empty() {
-            let width = stroke.maximum - stroke.minimum;
-            let at = |i: u32| stroke.minimum + 0.25 * f64::from(i) * width;
-            return Ok((0..5).map(at).collect());
-        }
-        let slack = 1e-9;
-        let inside = stroke.minimum - slack..=stroke.maximum + slack;
-        let place = |mm: &f64| {
-            let at = 1e-3 * mm;
-            match inside.contains(&at) {
-                true => Ok(at),
-                false => Err(wrong_use(format!(
-                    "--at {mm}: the table is between {} and {} mm",
-                    SixDigits(1e3 * stroke.minimum),
-                    SixDigits(1e3 * stroke.maximum)
-                ))),
-            }
+        places(axis, &self.at)
+    }
+}
+
+/// Positions at which growth is shown, m: those that were asked for (mm), or five over the stroke.
+///
+/// # Errors
+/// Wrong use, if one is outside the stroke or the load turns.
+pub fn places(axis: &Axis, at: &[f64]) -> Result<Vec<f64>> {
+    let stroke = &axis.stroke;
+    if axis.freedom() == Freedom::Rotary {
+        return match at.is_empty() {
+            true => Ok(Vec::new()),
+            false => Err(wrong_use(
+                "--at: the load of this axis turns, and growth is along lines alone".to_owned(),
+            )),
         };
-        self.at.iter().map(place).collect()
     }
-
-    fn duty(&self, axis: &Axis, model: &ThermalModel, motion: &Program) -> Result<Duty> {
-        let losses = LossModel::of(axis).into_diagnostic()?;
-        let mut duty = model.duty();
-        match self.losses {
-            LossesFrom::Reference => losses.add_motion(&mut duty, axis, motion),
-            LossesFrom::Simulation => {
-                let closed_loop = ClosedLoop::new(axis).into_diagnostic()?;
-                let add = |cycle: &axis_sim::Cycle| losses.add_cycle(&mut duty, axis.period, cycle);
-                let outcome = closed_loop.run(motion, &mut NoCompensation, add);
-                outcome.completed().into_diagnostic()?;
-            }
+    if at.is_empty() {
+        let width = stroke.maximum - stroke.minimum;
+        let at = |i: u32| stroke.minimum + 0.25 * f64::from(i) * width;
+        return Ok((0..5).map(at).collect());
+    }
+    let slack = 1e-9;
+    let inside = stroke.minimum - slack..=stroke.maximum + slack;
+    let place = |mm: &f64| {
+        let at = 1e-3 * mm;
+        match inside.contains(&at) {
+            true => Ok(at),
+            false => Err(wrong_use(format!(
+                "--at {mm}: the table is between {} and {} mm",
+                SixDigits(1e3 * stroke.minimum),
+                SixDigits(1e3 * stroke.maximum)
+            ))),
         }
-        Ok(duty)
-    }
+    };
+    at.iter().map(place).collect()
+}
 
-    fn run(
-        &self,
-        axis: &Axis,
-        model: &ThermalModel,
-        duty: &Duty,
-        places: &[f64],
-    ) -> Result<Heated> {
-        let at_work = model.under(duty).into_diagnostic()?;
+/// Hours of a duty.
+pub struct HeatRun<'a> {
+    /// The motion that repeats itself.
+    pub motion: &'a dyn Motion,
+    /// What it is called.
+    pub name: String,
+    /// How long, s.
+    pub duration: f64,
+    /// Temperature of the air, and of all at the start, °C.
+    pub air: f64,
+    /// Positions at which growth is shown, m.
+    pub places: Vec<f64>,
+    /// Whether the losses are those of the motion simulated in closed loop.
+    pub is_simulated: bool,
+}
+
+impl HeatRun<'_> {
+    /// Runs the hours.
+    ///
+    /// # Errors
+    /// If the axis has no thermal model, its loop does not come to the motion's end, or the heat does not settle.
+    pub fn on(&self, axis: &Axis) -> Result<Heated> {
+        let model = axis.thermal_model().into_diagnostic()?;
+        let duty = self.duty(axis, &model)?;
+        let at_work = model.under(&duty).into_diagnostic()?;
         let cold = model.at_rest(self.air);
         let mut state = cold.clone();
-        let mut heated = self.begun(axis, model, duty, places);
+        let mut heated = self.begun(axis, &model, &duty);
         for k in 0..=INTERVALS {
             if k > 0 {
                 let until = self.duration * f64::from(k) / f64::from(INTERVALS);
@@ -197,13 +258,27 @@ impl Options {
                     .wrap_err("the axis does not come to rest thermally")?
                     .steps;
             }
-            heated.push(model, &at_work, [&cold, &state]);
+            heated.push(&model, &at_work, [&cold, &state]);
         }
         heated.screw_at_end_c = state.screw().to_vec();
         Ok(heated)
     }
 
-    fn begun(&self, axis: &Axis, model: &ThermalModel, duty: &Duty, places: &[f64]) -> Heated {
+    fn duty(&self, axis: &Axis, model: &ThermalModel) -> Result<Duty> {
+        let losses = LossModel::of(axis).into_diagnostic()?;
+        let mut duty = model.duty();
+        if !self.is_simulated {
+            losses.add_motion(&mut duty, axis, self.motion);
+            return Ok(duty);
+        }
+        let closed_loop = ClosedLoop::new(axis).into_diagnostic()?;
+        let add = |cycle: &axis_sim::Cycle| losses.add_cycle(&mut duty, axis.period, cycle);
+        let outcome = closed_loop.run(self.motion, &mut NoCompensation, add);
+        outcome.completed().into_diagnostic()?;
+        Ok(duty)
+    }
+
+    fn begun(&self, axis: &Axis, model: &ThermalModel, duty: &Duty) -> Heated {
         let [dry, viscous] = duty.friction_power();
         let screw = model.parameters().screw;
         let nodes = model.nodes().into_iter().map(|node| HeatedNode {
@@ -215,17 +290,10 @@ impl Options {
         Heated {
             axis: axis.name.clone(),
             axis_fingerprint: axis.fingerprint.clone(),
-            motion: match &self.program {
-                Some(file) => file.display().to_string(),
-                None => format!(
-                    "trajectory {} there and back, standstills of {} s",
-                    self.trajectory,
-                    SixDigits(self.dwell)
-                ),
-            },
-            losses_from: match self.losses {
-                LossesFrom::Reference => "reference",
-                LossesFrom::Simulation => "simulation",
+            motion: self.name.clone(),
+            losses_from: match self.is_simulated {
+                false => "reference",
+                true => "simulation",
             },
             duty_s: duty.duration(),
             duration_s: self.duration,
@@ -242,10 +310,10 @@ impl Options {
             loss_w: Vec::new(),
             dry_factor: Vec::new(),
             viscous_factor: Vec::new(),
-            places: HeatedPlace::all(places, screw.is_some()),
+            places: HeatedPlace::all(&self.places, screw.is_some()),
             force: None,
             screw_at_end_c: Vec::new(),
-            report: self.report.clone(),
+            report: None,
         }
     }
 }

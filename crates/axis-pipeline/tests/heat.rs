@@ -1,0 +1,362 @@
+//! Heat beside motions: slow logs, growth along them, and both corrections, against a second simulator that shares no
+//! code (`independent_axis::HeatedScrew`: a rod of 5 mm cells, the nut where it is, losses of each instant).
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use axis_log::{Channel, Log};
+use axis_pipeline::heat::{
+    FollowOptions, HeatError, ModelHeat, SlowLog, SlowLogOptions, WarmMoves, Warmth, fit, follow,
+};
+use axis_pipeline::moves::NamedMotion;
+use axis_pipeline::strategies::{Predictors, STRATEGIES, SharedMotion, named};
+use axis_sim::{Axis, Measured};
+use axis_thermal::{GrowthOf, GrowthZero};
+use independent_axis::{HeatedScrew, Motion, Parameters, Random, there_and_back};
+use trajectories::{Limits, Program, Step};
+
+fn axis() -> Axis {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../data/axes");
+    Axis::read(&folder.join("screw-heat.toml")).unwrap()
+}
+
+fn program(from: f64, to: f64, speed: f64) -> Program {
+    let limits = Limits::new(speed, 1.0, 10.0).unwrap();
+    let rest = Step::Dwell { duration: 1.0 };
+    let steps = [to, from].map(|to| [Step::Move { to, limits }, rest]);
+    Program::new(from, steps.concat()).unwrap()
+}
+
+fn log(channels: Vec<(&str, Vec<f64>)>) -> Log {
+    let channel = |(name, values)| Channel::new(name, values).unwrap();
+    Log::new(channels.into_iter().map(channel).collect()).unwrap()
+}
+
+/// A duty and how many probings of it, each after five minutes at two places.
+type Stretch<'a> = (Option<&'a Motion>, f64, u32);
+
+/// A log of probings: time, number of the duty, place, growth (µm), power of friction.
+fn probed(stretches: &[Stretch<'_>]) -> Log {
+    let mut machine = HeatedScrew::other(20.0);
+    let mut random = Random::new(5, 3);
+    let mut rows: [Vec<f64>; 5] = Default::default();
+    let mut row = |values: [f64; 5]| {
+        for (column, value) in rows.iter_mut().zip(values) {
+            column.push(value);
+        }
+    };
+    row([0.0, 0.0, 500.0, 0.0, 0.0]);
+    for (motion, number, count) in stretches {
+        for _ in 0..*count {
+            for (place, seconds) in [(0.5, 290.0), (1.1, 10.0)] {
+                let spent = machine.friction_heat;
+                machine.run(*motion, seconds, |_| 20.0);
+                let growth = 1e6 * machine.growth(20.0, place) + 0.5 * random.normal();
+                let power = (machine.friction_heat - spent) / seconds;
+                row([machine.time, *number, 1e3 * place, growth, power]);
+            }
+        }
+    }
+    let [time, duty, place, growth, _] = rows;
+    log(vec![
+        ("t_s", time),
+        ("duty_1", duty),
+        ("place_mm", place),
+        ("growth_um", growth),
+    ])
+}
+
+/// An hour and three quarters of probings: two thirds fitted, the rest predicted.
+#[test]
+fn a_log_of_probings_makes_a_model_that_predicts_its_held_out_part() {
+    let axis = axis();
+    let (a, b) = (
+        there_and_back(0.45, 0.95, 0.2, 1.0),
+        there_and_back(0.1, 1.4, 0.15, 1.0),
+    );
+    let log = probed(&[(Some(&a), 1.0, 10), (Some(&b), 2.0, 6), (Some(&a), 1.0, 5)]);
+    let duties = [program(0.45, 0.95, 0.2), program(0.1, 1.4, 0.15)];
+    let duties = duties.map(|program| Arc::new(program) as SharedMotion);
+    let options = SlowLogOptions {
+        duties: &duties,
+        ..SlowLogOptions::default()
+    };
+    let slow = SlowLog::new(&axis, &log, &options).unwrap();
+    let found = fit(&axis, &[slow], 0.25).unwrap();
+    println!(
+        "{:?} {:?} {:e}",
+        found.before, found.after, found.fitted.rms
+    );
+    assert!(found.before.greatest > 15e-6 && found.before.of > 100e-6);
+    assert!(
+        found.after.greatest < 4e-6 && found.after.rms < 2e-6,
+        "{:?}",
+        found.after
+    );
+    // The model as a file's keys, and along the same log with a probing each half hour.
+    let keys = axis.thermal_keys_of(&found.fitted.parameters);
+    assert!(keys.iter().any(|(key, _)| key == "nut_to_screw_w_per_k"));
+    let slow = SlowLog::new(&axis, &log, &options).unwrap();
+    let errors = |parameters, probe_each| {
+        let how = FollowOptions {
+            window: 60.0,
+            homed: 0.0,
+            probe_each,
+            places: vec![0.95],
+        };
+        let model = axis_thermal::ThermalModel::new(parameters).unwrap();
+        let found = follow(model, &slow, &how).unwrap();
+        let errors = found.readings.iter().map(|[_, read, p]| read - p);
+        let squares = errors.map(|error| error * error).sum::<f64>();
+        let rms = (squares / found.readings.len() as f64).sqrt();
+        (rms, found.probings)
+    };
+    let assumed = errors(axis.thermal_parameters(), None);
+    let set_right = errors(axis.thermal_parameters(), Some(1200.0));
+    let fitted = errors(found.fitted.parameters.clone(), None);
+    println!("{assumed:?} {set_right:?} {fitted:?}");
+    assert!(
+        fitted.0 < 1.5e-6 && set_right.1 == 5,
+        "{set_right:?} {fitted:?}"
+    );
+    assert!(set_right.0 < 0.9 * assumed.0, "{set_right:?} {assumed:?}");
+}
+
+/// A log of encoder, scale and current, five times a second. The transmission winds up by friction and inertia, the
+/// screw has pitch errors, the scale grows.
+fn encoder_and_scale(hours: f64) -> (Log, Vec<[f64; 3]>) {
+    let p = Parameters::paper_with_measured_viscosity();
+    let motion = there_and_back(0.45, 0.95, 0.2, 1.0);
+    let mut machine = HeatedScrew::other(20.0);
+    let step = 0.2;
+    let mut rows: [Vec<f64>; 5] = Default::default();
+    let mut truth = Vec::new();
+    for k in 0..=(3600.0 * hours / step).round() as u32 {
+        let t = f64::from(k) * step;
+        let at = |t: f64| motion.at(t.rem_euclid(motion.duration()));
+        let [before, now, after] = [at(t - 1e-3), at(t), at(t + 1e-3)];
+        let acceleration = (after.velocity - before.velocity) / 2e-3;
+        let [dry, viscous] = machine.friction_factors(now.position);
+        let w = now.velocity / p.travel();
+        let friction = match w == 0.0 {
+            true => 0.0,
+            false => dry * p.coulomb * w.signum() + viscous * p.viscous * w,
+        };
+        let torque = friction + p.inertia() * acceleration / p.travel();
+        // 0.7 mrad for each N·m at the motor.
+        let wind_up = 7e-4 * torque * p.travel();
+        let grown = machine.growth(20.0, now.position);
+        let pitch = 4e-6 * (9.0 * now.position).sin();
+        let scale = 10e-6 * (machine.bodies[7] - 20.0) * now.position;
+        let table = now.position + grown - wind_up + pitch;
+        let values = [
+            t,
+            1e3 * now.position,
+            table - scale,
+            now.position / p.travel(),
+            torque / p.torque_constant,
+        ];
+        for (column, value) in rows.iter_mut().zip(values) {
+            column.push(value);
+        }
+        if k % 1500 == 0 && k > 0 {
+            let warmer = machine.bodies[7] - 20.0;
+            let growth = |x: f64| machine.growth(20.0, x) - 10e-6 * warmer * x;
+            truth.push([t, growth(0.65), growth(0.75)]);
+        }
+        machine.run(Some(&motion), step, |_| 20.0);
+    }
+    let [time, reference, position, angle, current] = rows;
+    let log = log(vec![
+        ("t_s", time),
+        ("position_ref_mm", reference),
+        ("position_m", position),
+        ("motor_angle_rad", angle),
+        ("iq_a", current),
+    ]);
+    (log, truth)
+}
+
+#[test]
+fn encoder_less_scale_tells_growth_and_the_current_tells_friction() {
+    let axis = axis();
+    let (log, truth) = encoder_and_scale(1.0);
+    let slow = SlowLog::new(&axis, &log, &SlowLogOptions::default()).unwrap();
+    assert_eq!(
+        slow.reads(),
+        (GrowthOf::ScrewLessScale, GrowthZero::FirstAtPlace)
+    );
+    let model = axis.thermal_model().unwrap();
+    let stretches = slow.stretches(&model).stretches;
+    assert_eq!(stretches.len(), 12);
+    // Readings, each less the first at its place.
+    let mut worst = 0.0_f64;
+    let read = |stretch: usize, x: f64| {
+        let found = &stretches[stretch].found;
+        // Five times a second tells a constant speed 0.1 m from the ends at the earliest.
+        assert!(found.len() >= 4, "{found:?}");
+        let after = found.iter().position(|[place, _]| *place > x).unwrap();
+        let ([a, p], [b, q]) = (found[after - 1], found[after]);
+        p + (q - p) * (x - a) / (b - a)
+    };
+    for (k, [_, near, far]) in truth.iter().enumerate() {
+        for (x, growth, first) in [(0.65, near, truth[0][1]), (0.75, far, truth[0][2])] {
+            let found = read(k, x) - read(0, x);
+            worst = worst.max((found - (growth - first)).abs());
+        }
+    }
+    println!("{worst:e}");
+    assert!(worst < 1e-6, "{worst:e}");
+    // Friction's power beside that of the second simulator: inertia leaves it out.
+    let mut machine = HeatedScrew::other(20.0);
+    let motion = there_and_back(0.45, 0.95, 0.2, 1.0);
+    for stretch in &stretches {
+        let spent = machine.friction_heat;
+        machine.run(Some(&motion), 300.0, |_| 20.0);
+        let power = (machine.friction_heat - spent) / 300.0;
+        let found = stretch.friction.unwrap();
+        assert!((found / power - 1.0).abs() < 0.02, "{found} {power}");
+    }
+    let found = fit(&axis, &[slow], 0.25).unwrap();
+    println!("{:?} {:?}", found.before, found.after);
+    assert!(found.after.greatest < 3e-6, "{:?}", found.after);
+    assert!(found.after.friction.unwrap() < 0.02, "{:?}", found.after);
+}
+
+/// The second simulator warms the machine up.
+struct Brute(HeatedScrew, Motion);
+
+impl Warmth for Brute {
+    fn until(&mut self, time: f64) -> Result<(), HeatError> {
+        let more = time - self.0.time;
+        if more > 0.0 {
+            self.0.run(Some(&self.1), more, |_| 20.0);
+        }
+        Ok(())
+    }
+
+    fn friction(&self) -> [f64; 2] {
+        self.0.friction_factors(0.7)
+    }
+
+    fn growth(&self, x: f64) -> f64 {
+        self.0.growth(20.0, x)
+    }
+}
+
+/// Each half alone leaves more than 50 µm after ten minutes; both leave what a plan leaves on the cold axis.
+#[test]
+fn growth_and_friction_are_planned_together() {
+    let axis = axis();
+    let stroke: SharedMotion = Arc::new(program(0.45, 0.95, 0.2));
+    let mut truth = Brute(
+        HeatedScrew::assumed(20.0),
+        there_and_back(0.45, 0.95, 0.2, 1.0),
+    );
+    let warm = WarmMoves::new(&axis, &mut truth, &[0.0, 600.0], 8.0).unwrap();
+    let moves = [NamedMotion {
+        name: "stroke".to_owned(),
+        motion: stroke.clone(),
+        learned: None,
+    }];
+    let run = |name: &str, heat: bool| {
+        let kind = named(STRATEGIES, name).unwrap();
+        let mut strategy = kind.strategy(&Predictors::of(&axis)).unwrap();
+        let model = ModelHeat::new(&axis, &[stroke.clone()], 20.0).unwrap();
+        let model = heat.then_some(model);
+        let passes = warm.run(&mut *strategy, &moves, model, |_: &mut Measured| (), || ());
+        let passes = passes.unwrap();
+        [0, 1].map(|pass| passes[pass][0].figures.max)
+    };
+    let (blind, both) = (run("plan", false), run("plan", true));
+    println!("{blind:?} {both:?}");
+    // In the eight seconds of a cold stroke the screw grows by a micrometre.
+    assert!(both[0] < 2.0 && blind[0] < 3.0, "{blind:?} {both:?}");
+    assert!(blind[1] > 70.0 && both[1] < 2.5, "{blind:?} {both:?}");
+}
+
+/// Along a motion of minutes growth and friction change on the way.
+#[test]
+fn what_is_ahead_of_a_long_motion_is_what_the_network_does() {
+    let axis = axis();
+    let one = program(0.45, 0.95, 0.2);
+    let limits = Limits::new(0.2, 1.0, 10.0).unwrap();
+    let rest = Step::Dwell { duration: 1.0 };
+    let steps = [0.95, 0.45]
+        .map(|to| [Step::Move { to, limits }, rest])
+        .concat();
+    let long = Program::new(0.45, steps.repeat(20)).unwrap();
+    let mut heat = ModelHeat::new(&axis, &[Arc::new(one) as SharedMotion], 20.0).unwrap();
+    let ahead = heat.ahead(&long).unwrap();
+    let end = trajectories::Motion::duration(&long);
+    assert_eq!(ahead.growth(0.0, 0.9)[0], 0.0);
+    for share in [0.5, 1.0] {
+        heat.until(share * end).unwrap();
+        let [growth, slope] = ahead.growth(share * end, 0.9);
+        assert!(
+            (growth - heat.growth(0.9)).abs() < 0.3e-6,
+            "{growth} {}",
+            heat.growth(0.9)
+        );
+        let rise = (heat.growth(0.91) - heat.growth(0.89)) / 0.02;
+        assert!((slope / rise - 1.0).abs() < 0.02, "{slope} {rise}");
+        for (a, b) in ahead.friction(share * end).iter().zip(heat.friction()) {
+            assert!((a - b).abs() < 0.01, "{a} {b}");
+        }
+    }
+}
+
+#[test]
+fn logs_without_sense_are_refused() {
+    let axis = axis();
+    let time = || ("t_s", vec![0.0, 300.0]);
+    let refused = |channels, options: &SlowLogOptions<'_>| {
+        let log = log(channels);
+        let refused = SlowLog::new(&axis, &log, options).map(|slow| fit(&axis, &[slow], 0.0));
+        match refused {
+            Err(error) | Ok(Err(error)) => error.to_string(),
+            Ok(Ok(_)) => panic!("taken"),
+        }
+    };
+    let options = SlowLogOptions::default();
+    for (channels, words) in [
+        (vec![time()], "duty_1"),
+        (
+            vec![time(), ("duty_1", vec![0.0, 1.0])],
+            "row 2; valid: 0 for standstill",
+        ),
+        (
+            vec![time(), ("position_ref_m", vec![0.5, 0.6])],
+            "rows at most 0.5 s apart",
+        ),
+        (
+            vec![time(), ("duty_1", vec![0.0, 0.0])],
+            "valid: a log with growth",
+        ),
+        (
+            vec![
+                time(),
+                ("duty_1", vec![0.0, 0.0]),
+                ("growth_um", vec![0.0, 1.0]),
+            ],
+            "growth and place without the other",
+        ),
+        (
+            vec![
+                ("t_s", vec![0.0, 0.2]),
+                ("position_ref_m", vec![0.5, 0.6]),
+                ("place_m", vec![0.5, 0.6]),
+                ("growth_m", vec![0.0, 1e-6]),
+            ],
+            "probed_1",
+        ),
+    ] {
+        let message = refused(channels, &options);
+        assert!(message.contains(words), "{message}");
+    }
+    let text = include_str!("../../../data/axes/linear-motor.toml");
+    let other = Axis::parse("linear-motor.toml", text).unwrap();
+    let log = log(vec![time(), ("duty_1", vec![0.0, 0.0])]);
+    let error = SlowLog::new(&other, &log, &options).err().unwrap();
+    assert!(error.to_string().contains("no screw"), "{error}");
+}

@@ -1,0 +1,228 @@
+//! A log of hours: duties, the growth that was read meanwhile, and what a model makes of them.
+
+use crate::duty::Duty;
+use crate::error::{ThermalError, check};
+use crate::growth::Growth;
+use crate::model::{ThermalModel, ThermalState};
+use crate::run::ThermalAccuracy;
+use crate::work::AxisAtWork;
+
+/// What a reading of growth shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GrowthOf {
+    /// The screw, against the bed at the front bearing.
+    #[default]
+    Screw,
+    /// The screw, against a gauge that is clamped to the bed at the same place: a touch probe.
+    ScrewLessBed,
+    /// The screw, against the scale: the scale's position less the motor's.
+    ScrewLessScale,
+}
+
+impl Growth {
+    /// What a reading shows of it, m.
+    pub fn read(&self, of: GrowthOf) -> f64 {
+        match of {
+            GrowthOf::Screw => self.screw,
+            GrowthOf::ScrewLessBed => self.screw - self.bed,
+            GrowthOf::ScrewLessScale => self.screw - self.scale,
+        }
+    }
+}
+
+/// What readings of growth count from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GrowthZero {
+    /// The begin of the log.
+    #[default]
+    Begin,
+    /// The first reading at each place: its value there is unknown, as the pitch errors of a screw are.
+    FirstAtPlace,
+}
+
+/// A stretch of a log: a duty, and what was read at its end.
+#[derive(Clone, Debug)]
+pub struct GrowthStretch {
+    /// Losses of the reference; a standstill is a duty too.
+    pub duty: Duty,
+    /// How long, s.
+    pub duration: f64,
+    /// Temperature of the air at its begin and its end, °C.
+    pub air: [f64; 2],
+    /// Positions (m) and readings of growth (m) at the end of the stretch.
+    pub found: Vec<[f64; 2]>,
+    /// Mean power of the friction over the stretch, W: mean of torque times speed of the motor over whole
+    /// repetitions of the duty. None if nothing was measured.
+    pub friction: Option<f64>,
+}
+
+/// A log that begins with all bodies at the temperature of the air.
+#[derive(Clone, Debug, Default)]
+pub struct GrowthLog {
+    /// Its stretches, in their order.
+    pub stretches: Vec<GrowthStretch>,
+    /// What its readings show.
+    pub of: GrowthOf,
+    /// What they count from.
+    pub zero: GrowthZero,
+}
+
+/// A reading of growth, and what the model says of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FollowedGrowth {
+    /// Number of its stretch, from 0.
+    pub stretch: usize,
+    /// Time of the reading since the log's begin, s.
+    pub time: f64,
+    /// Position, m.
+    pub place: f64,
+    /// As it was read, m.
+    pub found: f64,
+    /// As the model has it, m.
+    pub predicted: f64,
+}
+
+/// A reading of the friction's power, and what the model says of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FollowedFriction {
+    /// Number of its stretch, from 0.
+    pub stretch: usize,
+    /// As it was read, W.
+    pub found: f64,
+    /// As the model has it, W.
+    pub predicted: f64,
+}
+
+/// All readings of a log beside what a model says of them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FollowedLog {
+    /// Of growth.
+    pub growth: Vec<FollowedGrowth>,
+    /// Of the friction's power.
+    pub friction: Vec<FollowedFriction>,
+}
+
+impl FollowedLog {
+    /// Model less log of each reading of growth, m.
+    pub fn errors(&self) -> impl Iterator<Item = f64> + '_ {
+        self.growth.iter().map(|read| read.predicted - read.found)
+    }
+}
+
+/// Positions nearer than this count as one, m.
+const SAME_PLACE: f64 = 1e-6;
+
+impl GrowthLog {
+    /// The first stretches, as a log.
+    #[must_use]
+    pub fn first(&self, stretches: usize) -> Self {
+        let count = stretches.min(self.stretches.len());
+        Self {
+            stretches: self.stretches[..count].to_vec(),
+            ..*self
+        }
+    }
+
+    /// How many readings of growth it has.
+    pub fn readings(&self) -> usize {
+        let stretches = self.stretches.iter();
+        stretches.map(|stretch| stretch.found.len()).sum()
+    }
+
+    pub(crate) fn validate(&self) -> Result<(), ThermalError> {
+        for stretch in &self.stretches {
+            let read = stretch.found.iter().flatten().copied();
+            let numbers = read.chain(stretch.air).chain(stretch.friction);
+            for value in numbers {
+                check(
+                    value.is_finite(),
+                    "a number of the log",
+                    value,
+                    "",
+                    "finite",
+                )?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl ThermalModel {
+    /// Follows a log: all readings beside what this model says of them.
+    ///
+    /// # Errors
+    /// [`ThermalError`] if the log's duties are of another screw, or a number of it is not finite.
+    pub fn follow(&self, log: &GrowthLog) -> Result<FollowedLog, ThermalError> {
+        log.validate()?;
+        let first = log.stretches.first().map_or(0.0, |stretch| stretch.air[0]);
+        let cold = self.at_rest(first);
+        let mut state = cold.clone();
+        let mut followed = FollowedLog::default();
+        let mut zeros: Vec<[f64; 3]> = Vec::new();
+        let mut at_work: Option<(&Duty, AxisAtWork)> = None;
+        for (number, stretch) in log.stretches.iter().enumerate() {
+            // The same duty goes on in the same network.
+            let network = match at_work.take() {
+                Some((duty, network)) if *duty == stretch.duty => network,
+                _ => self.under(&stretch.duty)?,
+            };
+            match stretch.friction {
+                None => advance(&network, &mut state, stretch, [0.0, 1.0])?,
+                Some(found) => {
+                    // Simpson's rule.
+                    let before = friction_power(&network, &state);
+                    advance(&network, &mut state, stretch, [0.0, 0.5])?;
+                    let middle = friction_power(&network, &state);
+                    advance(&network, &mut state, stretch, [0.5, 1.0])?;
+                    let after = friction_power(&network, &state);
+                    followed.friction.push(FollowedFriction {
+                        stretch: number,
+                        found,
+                        predicted: (before + 4.0 * middle + after) / 6.0,
+                    });
+                }
+            }
+            at_work = Some((&stretch.duty, network));
+            for &[place, found] in &stretch.found {
+                let predicted = self.growth(&cold, &state, place).read(log.of);
+                let reading = [place, found, predicted];
+                let known = zeros.iter().find(|at| (at[0] - place).abs() < SAME_PLACE);
+                let zero = match (log.zero, known) {
+                    (GrowthZero::Begin, _) => [0.0; 3],
+                    (GrowthZero::FirstAtPlace, Some(zero)) => *zero,
+                    (GrowthZero::FirstAtPlace, None) => {
+                        zeros.push(reading);
+                        continue;
+                    }
+                };
+                followed.growth.push(FollowedGrowth {
+                    stretch: number,
+                    time: state.time,
+                    place,
+                    found: found - zero[1],
+                    predicted: predicted - zero[2],
+                });
+            }
+        }
+        Ok(followed)
+    }
+}
+
+fn friction_power(at_work: &AxisAtWork, state: &ThermalState) -> f64 {
+    let losses = at_work.losses(state);
+    losses.total() - losses.winding
+}
+
+/// A part of a stretch, from one share of it to another, in air that changes linearly.
+fn advance(
+    at_work: &AxisAtWork,
+    state: &mut ThermalState,
+    stretch: &GrowthStretch,
+    [from, to]: [f64; 2],
+) -> Result<(), ThermalError> {
+    let (begun, whole) = (state.time, stretch.duration);
+    let [first, last] = stretch.air;
+    let air = |t: f64| first + (last - first) * (from + (t - begun) / whole);
+    at_work.run_in(state, air, (to - from) * whole, &ThermalAccuracy::default())?;
+    Ok(())
+}

@@ -1,0 +1,140 @@
+//! `heat --fit`, `heat --predict`: slow logs, and the thermal model that they are fitted or predicted by.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use axis_log::{Log, read_log};
+use axis_pipeline::heat::SlowLogOptions;
+use axis_pipeline::strategies::SharedMotion;
+use axis_sim::{Axis, SixDigits};
+use axis_thermal::{GrowthOf, GrowthZero};
+use clap::{Args, ValueEnum};
+use miette::{IntoDiagnostic, Result, WrapErr};
+use trajectories::Program;
+
+use super::heat_time::time;
+use crate::exit::wrong_use;
+use crate::out_file;
+
+/// Options for slow logs.
+// A group by itself: clap names groups after their type, and the command's own options have that name.
+#[derive(Args)]
+#[group(id = "slow-log-options")]
+pub(super) struct Options {
+    /// Fit the thermal model to logs of hours, each begun cold, and write an axis file with what was
+    /// fitted in its [thermal]
+    #[arg(long, value_name = "LOG", num_args = 1.., requires = "out", conflicts_with_all = ["predict", "report"])]
+    pub(super) fit: Vec<PathBuf>,
+    /// Predict growth along a log of hours from its reference, beside what was read in it
+    #[arg(long, value_name = "LOG", conflicts_with = "report")]
+    pub(super) predict: Option<PathBuf>,
+    /// Motion programs that the logs' channel duty_1 counts from 1, each repeated [default: the duty of
+    /// --trajectory or --program alone]
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    pub(super) duties: Vec<PathBuf>,
+    /// Where to write: with --fit the axis file, with --predict the log with growth (.csv, .parquet or .mat)
+    #[arg(long, value_name = "FILE", value_parser = out_file::file())]
+    pub(super) out: Option<PathBuf>,
+    /// Last part of each log that is not fitted but predicted, %
+    #[arg(
+        long,
+        value_name = "PERCENT",
+        default_value_t = 25.0,
+        requires = "fit",
+        allow_negative_numbers = true
+    )]
+    pub(super) held_out: f64,
+    /// What a probe reads the screw's growth against
+    #[arg(long, value_enum, default_value_t = ProbeAgainst::Bearing)]
+    probe_against: ProbeAgainst,
+    /// What readings of a probe count from
+    #[arg(long, value_enum, default_value_t = ProbeZero::Begin)]
+    probe_zero: ProbeZero,
+    /// Set the prediction right by the readings of the log so far apart; the others check it
+    #[arg(long, value_name = "TIME", value_parser = time, requires = "predict")]
+    pub(super) probe_each: Option<f64>,
+    /// When the axis was homed, after the log's begin: growth counts from then [default: at the begin]
+    #[arg(long, value_name = "TIME", value_parser = time, requires = "predict")]
+    pub(super) homed: Option<f64>,
+}
+
+/// What a probe reads growth against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum ProbeAgainst {
+    /// The bed at the front bearing
+    Bearing,
+    /// A gauge that is clamped to the bed at the same position
+    Bed,
+}
+
+/// What readings of a probe count from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum ProbeZero {
+    /// The begin of the log
+    Begin,
+    /// The first reading at each position
+    First,
+}
+
+/// Length of the stretches that a reference is fitted in, s.
+pub(super) const FIT_WINDOW: f64 = 300.0;
+
+impl Options {
+    /// Whether a log was given.
+    pub(super) fn is_asked(&self) -> bool {
+        !self.fit.is_empty() || self.predict.is_some()
+    }
+
+    /// The duties of the logs: those named, or `own`.
+    pub(super) fn programs(
+        &self,
+        axis: &Axis,
+        own: impl FnOnce() -> Result<Program>,
+    ) -> Result<Vec<SharedMotion>> {
+        let shared = |program| Arc::new(program) as SharedMotion;
+        let read = |file: &PathBuf| super::heat::repeated(file, axis).map(shared);
+        match self.duties.is_empty() {
+            // An axis file without a trajectory may have logs with a reference.
+            true => Ok(own().into_iter().map(shared).collect()),
+            false => self.duties.iter().map(read).collect(),
+        }
+    }
+
+    /// How logs are read.
+    pub(super) fn reading<'a>(&self, duties: &'a [SharedMotion], air: f64) -> SlowLogOptions<'a> {
+        SlowLogOptions {
+            duties,
+            air,
+            window: FIT_WINDOW,
+            probe: match self.probe_against {
+                ProbeAgainst::Bearing => GrowthOf::Screw,
+                ProbeAgainst::Bed => GrowthOf::ScrewLessBed,
+            },
+            zero: match self.probe_zero {
+                ProbeZero::Begin => GrowthZero::Begin,
+                ProbeZero::First => GrowthZero::FirstAtPlace,
+            },
+        }
+    }
+
+    /// Share of the logs that is held out.
+    pub(super) fn held_out(&self) -> Result<f64> {
+        match (0.0..=90.0).contains(&self.held_out) {
+            true => Ok(0.01 * self.held_out),
+            false => Err(wrong_use(format!(
+                "--held-out is {} %; valid: from 0 to 90",
+                SixDigits(self.held_out)
+            ))),
+        }
+    }
+}
+
+/// A log as its file has it, with the columns that the axis file's [log] renames.
+pub(super) fn slow_log(axis: &Axis, file: &Path) -> Result<Log> {
+    read_log(file, &axis.log, &[]).into_diagnostic()
+}
+
+/// Names the log in an error.
+pub(super) fn of_log<T>(file: &Path, result: Result<T>) -> Result<T> {
+    result.wrap_err_with(|| file.display().to_string())
+}
