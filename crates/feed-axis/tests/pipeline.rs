@@ -187,7 +187,10 @@ fn check_figures(summary: &Value) {
         let loops = &summary["loops"][which];
         let sensitivity = loops["sensitivity"].as_f64().unwrap();
         assert!((1.49..1.54).contains(&sensitivity), "{loops}");
-        assert_eq!((&loops["cases"], &loops["unstable"]), (&24.into(), &0.into()));
+        assert_eq!(
+            (&loops["cases"], &loops["unstable"]),
+            (&24.into(), &0.into())
+        );
     }
     let (mut best_peak, mut best_mean) = (0.0_f64, 0.0_f64);
     for (i, t) in trajectories.iter().enumerate() {
