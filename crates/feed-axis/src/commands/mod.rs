@@ -91,7 +91,7 @@ pub enum Command<J: Jobs> {
     Simulate(simulate::Options),
     /// Simulate a machine of two or three axes on a circle or another path: contour error, figures in the manner of ISO
     /// 230-4, laps
-    Contour(contour::Options),
+    Contour(Box<contour::Options>),
     /// Hours of a duty: temperatures, growth by position and time, thermal force
     Heat(heat::Options),
     /// Check the axis against the data sheets of its parts, under a duty: value, limit, margin
