@@ -327,7 +327,7 @@ fn logs_without_sense_are_refused() {
         ),
         (
             vec![time(), ("position_ref_m", vec![0.5, 0.6])],
-            "rows at most 0.5 s apart",
+            "rows at most 0.2 s apart",
         ),
         (
             vec![time(), ("duty_1", vec![0.0, 0.0])],

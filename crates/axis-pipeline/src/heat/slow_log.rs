@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `t_s` | time |
 //! | `duty_1` | number of the duty since the row before, from 1; 0 at standstill |
-//! | or `position_ref_m` | the reference, each half second or oftener; `velocity_ref_m_s` if it is there |
+//! | or `position_ref_m` | the reference, five times a second or oftener; `velocity_ref_m_s` if it is there |
 //! | `air_degc` | temperature of the air; if it is not there the one that is stated |
 //! | `place_m`, `growth_m` | where growth was probed, and what was found; `probed_1` is 1 in rows in which it was |
 //! | or `position_m`, `motor_angle_rad` | the scale and the motor's encoder |
@@ -27,7 +27,7 @@ use super::readings::{self, Reading};
 use crate::strategies::SharedMotion;
 
 /// Longest sampling interval of a reference, s: beyond it speeds are not known.
-const LONGEST_INTERVAL: f64 = 0.5;
+const LONGEST_INTERVAL: f64 = 0.21;
 
 /// How a log is read.
 #[derive(Clone)]
@@ -241,9 +241,10 @@ impl<'a> SlowLog<'a> {
             return DutySample::default();
         };
         let step = self.time[row + 1] - self.time[row];
+        // What it has travelled is known better than its speed at either end.
         let at = Setpoint {
             position: 0.5 * (position[row] + position[row + 1]),
-            velocity: 0.5 * (velocity[row] + velocity[row + 1]),
+            velocity: (position[row + 1] - position[row]) / step,
             acceleration: (velocity[row + 1] - velocity[row]) / step,
             ..Setpoint::default()
         };
@@ -253,7 +254,7 @@ impl<'a> SlowLog<'a> {
     /// Mean power of friction, W.
     fn friction_between(&self, from: usize, to: usize) -> Option<f64> {
         let read = self.friction.as_ref()?;
-        let Source::Reference { velocity, .. } = &self.source else {
+        let Source::Reference { position, .. } = &self.source else {
             return Some(read[to]).filter(|power| *power > 0.0);
         };
         if from == to {
@@ -262,9 +263,8 @@ impl<'a> SlowLog<'a> {
         // Torque of inertia and loads is the reference's, which no friction takes part in.
         let power = |row: usize| {
             let sample = self.sample(row);
-            let speed = 0.5 * (velocity[row] + velocity[row + 1]) / self.axis.travel_per_radian();
-            let torque = 0.5 * (read[row] + read[row + 1]) - sample.torque[0];
-            sample.duration * torque * speed
+            let turned = (position[row + 1] - position[row]) / self.axis.travel_per_radian();
+            turned * (0.5 * (read[row] + read[row + 1]) - sample.torque[0])
         };
         let sum: f64 = (from..to).map(power).sum();
         Some(sum / (self.time[to] - self.time[from]))
@@ -298,9 +298,7 @@ fn source<'a>(log: &Log, options: &SlowLogOptions<'a>) -> Result<Source<'a>, Hea
     if let Some(row) = time.windows(2).position(|w| w[1] - w[0] > LONGEST_INTERVAL) {
         return Err(HeatError::log(
             format!("has no reference from {} to {} s", time[row], time[row + 1]),
-            format!(
-                "rows at most {LONGEST_INTERVAL} s apart, or a channel duty_1 in the place of position_ref_m"
-            ),
+            "rows at most 0.2 s apart, or a channel duty_1 in the place of position_ref_m",
         ));
     }
     let velocity = channel(log, "velocity_ref", SPEED);
