@@ -34,7 +34,7 @@ pub enum PackageError {
     )]
     Header(String),
     /// A unit without a library cannot be simulated.
-    #[error("a unit has one library at least")]
+    #[error("the unit has no library; valid: one for each platform, at least one")]
     NoLibrary,
     /// Two libraries for one folder.
     #[error("two libraries belong in binaries/{0} of the unit; valid: one for each platform")]
