@@ -92,6 +92,7 @@ mod remainder;
 mod residual;
 mod sample;
 mod transfer_function;
+mod warmed;
 
 #[cfg(feature = "identify")]
 pub use adapt::{

@@ -164,7 +164,9 @@ impl Run<'_> {
         if !self.is_homed {
             return;
         }
-        let starts = self.next_probing.is_some_and(|next| now >= next - 1e-6);
+        let starts = self
+            .next_probing
+            .is_some_and(|next| now >= next - 0.5 * ONE_PROBING);
         if self.probing_since.is_none() && starts {
             self.probing_since = Some(now);
             self.next_probing = self.options.probe_each.map(|each| now + each);

@@ -50,14 +50,31 @@ impl Axis {
     /// the file: each with its unit, and the value in that unit. Together they make an axis file of those numbers;
     /// what no key states (lengths, the number of segments, loss of the winding) is not among them.
     pub fn thermal_keys_of(&self, other: &ThermalParameters) -> Vec<(String, f64)> {
-        let own = spelt(&self.thermal_parameters());
-        let other = spelt(other).into_iter();
+        let own = self.spelt(&self.thermal_parameters());
+        let other = self.spelt(other).into_iter();
         other.filter(|number| !own.contains(number)).collect()
     }
 
     /// All numbers of this axis as [`Axis::thermal_keys_of`] has them.
     pub fn thermal_keys(&self) -> Vec<(String, f64)> {
-        spelt(&self.thermal_parameters())
+        self.spelt(&self.thermal_parameters())
+    }
+
+    /// Numbers as keys of the file, in the units that it states them in.
+    fn spelt(&self, numbers: &ThermalParameters) -> Vec<(String, f64)> {
+        let mut numbers = numbers.clone();
+        let one = |(name, number): &(&'static str, numbers::Number)| {
+            let value = *number(&mut numbers)?;
+            let key = THERMAL_KEYS.iter().find(|key| key.name == *name)?;
+            let stated = self.thermal.unit(name);
+            let units = key.units();
+            let unit = units.iter().find(|(unit, _)| *unit == stated);
+            Some(match unit.or(units.first()) {
+                Some((unit, factor)) => (format!("{name}_{unit}"), value / factor),
+                None => ((*name).to_owned(), value),
+            })
+        };
+        NUMBERS.iter().filter_map(one).collect()
     }
 
     /// The numbers of [`Axis::thermal_model`].
@@ -92,20 +109,6 @@ impl Axis {
         }
         p
     }
-}
-
-/// Numbers as keys of the file.
-fn spelt(numbers: &ThermalParameters) -> Vec<(String, f64)> {
-    let mut numbers = numbers.clone();
-    let one = |(name, number): &(&'static str, numbers::Number)| {
-        let value = *number(&mut numbers)?;
-        let key = THERMAL_KEYS.iter().find(|key| key.name == *name)?;
-        Some(match key.units().first() {
-            Some((unit, factor)) => (format!("{name}_{unit}"), value / factor),
-            None => ((*name).to_owned(), value),
-        })
-    };
-    NUMBERS.iter().filter_map(one).collect()
 }
 
 fn screw(v: &Values, shape: &ScrewShape) -> ThermalScrew {
@@ -167,6 +170,15 @@ mod tests {
         }
         let keys = axis.thermal_keys_of(&other);
         assert!(keys.len() > 35, "{}", keys.len());
+        // In the unit that the file states them in: no quantity stands there twice.
+        let text = format!("{AXIS}\n[thermal]\ntable_capacity_kj_per_k = 100\n");
+        let stated = Axis::parse("axis.toml", &text).unwrap();
+        let spelt = stated.thermal_keys_of(&other);
+        assert!(
+            spelt
+                .iter()
+                .any(|(key, _)| key == "table_capacity_kj_per_k")
+        );
         let lines: String = keys
             .iter()
             .map(|(key, v)| format!("{key} = {v:?}\n"))

@@ -33,8 +33,9 @@ use lugre::{Exponential, LuGre};
 pub use known::Plan;
 
 use crate::error::{require, within};
-use crate::model::{DriveModel, MOST_DELAY, warmed};
+use crate::model::{DriveModel, MOST_DELAY};
 use crate::residual::{Residual, ResidualAt, ResidualModel};
+use crate::warmed::warmed;
 use crate::{CompensatorError, Correction, Reference};
 use actuator::Inverse;
 use smoothing::{MOST_HALF, Smoothing};
