@@ -40,12 +40,12 @@ pub struct Moves<'a, S> {
     sense: S,
     left: Option<Left>,
     heat: Option<Arc<HeatAhead>>,
-    grown: Option<Growth<'a>>,
+    grown: Option<TableOffset<'a>>,
 }
 
 /// By how far the table is from where the controller's measuring has it, m, over the time since the move's begin (s) and
 /// the position.
-pub type Growth<'a> = Box<dyn Fn(f64, f64) -> f64 + 'a>;
+pub type TableOffset<'a> = Box<dyn Fn(f64, f64) -> f64 + 'a>;
 
 /// How the last move has left the axis.
 struct Left {
@@ -75,7 +75,7 @@ impl<'a, S: FnMut(&mut Measured)> Moves<'a, S> {
     pub fn warmed(
         &mut self,
         closed_loop: &'a ClosedLoop,
-        grown: Growth<'a>,
+        grown: TableOffset<'a>,
         heat: Option<Arc<HeatAhead>>,
     ) {
         if !std::ptr::eq(self.closed_loop, closed_loop) {
