@@ -4,10 +4,12 @@ import csv
 import ctypes
 import json
 import math
+import shutil
 import subprocess
 import tomllib
 from pathlib import Path
 
+import fmpy
 from fmpy import extract, read_model_description
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import (
@@ -191,3 +193,31 @@ def follow(unit, log, first, last):
 def shared(unit, log):
     names = [v.name for v in unit.of_causality("output")]
     return [name for name in names if name.startswith("drive.") and name[6:] in log]
+
+
+def in_c(unit, version):
+    """A program in C by the standard's own headers: signatures, the logger, states as bytes. Under valgrind if it is there."""
+    if shutil.which("cc") is None:
+        with open("target/skipped-tests", "a") as skipped:
+            skipped.write("program\tcc\t.ci/fmu: a program in C takes a unit\n")
+        return "left out: no C compiler"
+    headers = Path(fmpy.__file__).parent / "c-code"
+    library, program = unit.fmu.dll._name, Path(unit.folder) / "importer"
+    flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-O2", f"-I{headers}", "-o", program]
+    subprocess.run(["cc", *flags, Path(__file__).with_name(f"fmu{version}.c"), library], check=True)
+    size, input = 10.4 * unit.step_size, unit.of_causality("input")[0]
+    output = unit.of_causality("output")[0].valueReference
+    folder = Path(unit.folder) / "resources"
+    resources = folder.as_uri() if version == 2 else str(folder)
+    valgrind = ["valgrind", "-q", "--leak-check=full", "--error-exitcode=9"] if shutil.which("valgrind") else []
+    call = [*valgrind, program, unit.description.guid, resources, repr(size), str(input.valueReference), str(output)]
+    said = subprocess.run(call, check=True, stdout=subprocess.PIPE, text=True).stdout
+    rows = [float(line) for line in said.split()]
+    unit.begin()
+    unit.set(input.name, float(input.start) + 1e-4)
+    expected = []
+    for k in range(20):
+        unit.fmu.doStep(k * size, size)
+        expected += unit.read([output])
+    assert rows == expected + expected[10:], (rows, expected)
+    return "under valgrind" if valgrind else None

@@ -16,7 +16,7 @@ echo "-- a source distribution"
 "$venv/bin/maturin" sdist --quiet --manifest-path crates/feed-axis-py/Cargo.toml --out target/python/packages 2>/dev/null
 sdist=$(echo "$PWD"/target/python/packages/feed_axis-*.tar.gz)
 # Nothing that only this folder has.
-if tar tzf "$sdist" | grep -E '/(target|data|docs|xtask)/' | head -3 | grep .; then
+if tar tzf "$sdist" | grep -E '^feed_axis-[^/]*/(target|data|docs|xtask)/' | head -3 | grep .; then
   echo "error: the source distribution has files that do not belong in it" >&2
   exit 1
 fi
