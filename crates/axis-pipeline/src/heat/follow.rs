@@ -88,7 +88,7 @@ struct Run<'a> {
     model: ThermalModel,
     /// First reading and prediction at each place, if readings count from them.
     zeros: Vec<[f64; 3]>,
-    /// Readings of the probing that goes on.
+    /// Positions of the probing that goes on, and by how much growth is off there, m.
     probing: Vec<[f64; 2]>,
     probing_since: Option<f64>,
     next_probing: Option<f64>,
@@ -172,18 +172,22 @@ impl Run<'_> {
             self.next_probing = self.options.probe_each.map(|each| now + each);
         }
         match self.probing_since {
-            // What the predictor is to show there: its own growth, and by how much it is off.
-            Some(_) => self
-                .probing
-                .push([place, predicted + reading[1] - reading[2]]),
+            // By how much it is off at the time of the reading.
+            Some(_) => self.probing.push([place, reading[1] - reading[2]]),
             None => self.found.readings.push(reading),
         }
     }
 
     fn set_right(&mut self) -> Result<(), HeatError> {
-        self.predictor.probed(self.log.reads().0, &self.probing)?;
+        let (of, _) = self.log.reads();
+        // Time has gone on since the readings; what was off stays so.
+        let now = |[place, off]: [f64; 2]| {
+            let growth = self.predictor.growth_at_end(place).read(of);
+            [place, growth + off]
+        };
+        let read: Vec<[f64; 2]> = self.probing.drain(..).map(now).collect();
+        self.predictor.probed(of, &read)?;
         self.found.probings += 1;
-        self.probing.clear();
         self.probing_since = None;
         Ok(())
     }
