@@ -9,8 +9,11 @@ Blocks of a page:
   ```sh,fails   likewise, of commands that must fail; what they print is standard error as well.
   ```text       straight behind such a block: what it prints. Every line must be there, in this order;
                 three dots stand for the rest of a line, or alone for any number of lines; spaces count as one.
-  ```toml,save=FILE, ```toml,append=FILE, ```csv,save=FILE
+  ```LANGUAGE,save=FILE, ```LANGUAGE,append=FILE
                 blocks that a reader saves as a file, or adds to its end.
+  ```toml,change=FILE
+                lines that a reader changes in a file: each stands for the one of its key, or of the key in its
+                comment, `# in place of KEY`.
   ```sh,ignore  does not run; a comment before it says why: <!-- not run: ... -->
 A line with a command that a page names as <!-- not run: `COMMAND`: why --> is left out of its blocks.
 A page with <!-- goes on from PAGE.md --> finds the files that the blocks of that page have made.
@@ -38,6 +41,17 @@ def pages():
     summary = (ROOT / "docs/SUMMARY.md").read_text()
     named = [ROOT / "docs" / name for name in re.findall(r"\]\(([^)]+\.md)\)", summary)]
     return [ROOT / "README.md", *named, *sorted(ROOT.glob("crates/*/README.md"))]
+
+
+def change(file, lines):
+    """Puts each of these lines of TOML in the place of the one of its key."""
+    whole = file.read_text()
+    for line in lines.splitlines():
+        key = re.search(r"# in place of (\w+)|^(\w+)", line)
+        whole, count = re.subn(rf"(?m)^{key[1] or key[2]} = .*", line, whole)
+        if count != 1:
+            sys.exit(f"{file}: {key[0]} stands there {count} times")
+    file.write_text(whole)
 
 
 def blocks(text):
@@ -122,7 +136,9 @@ def run_page(page, text, work, scratch, wrong):
             if not pattern(block).search(output):
                 wrong.append(where)
                 print(f"{where}: the page shows\n{block}\nthe command printed\n{output}", flush=True)
-        elif kept := re.fullmatch(r"(?:toml|csv),(save|append)=([\w.-]+)", language):
+        elif changed := re.fullmatch(r"toml,change=([\w.-]+)", language):
+            change(work / changed[1], block)
+        elif kept := re.fullmatch(r"\w+,(save|append)=([\w.-]+)", language):
             with (work / kept[2]).open("w" if kept[1] == "save" else "a") as file:
                 file.write(block + "\n")
         elif language in ("bash", "shell", "console"):

@@ -3,14 +3,12 @@
 import contextlib
 import ctypes
 import re
-import shutil
-import subprocess
 from pathlib import Path
 
 import fmpy
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import fmi2CallbackFunctions, fmi2DoStepStatus, fmi2LastSuccessfulTime, fmi2PendingStatus, fmi2Terminated
-from fmu_unit import Unit2, callbacks
+from fmu_unit import Unit2, callbacks, in_c
 
 # Of fmi2Functions.h, functions for model exchange alone.
 MODEL_EXCHANGE = {
@@ -181,28 +179,5 @@ def check_instantiation(fmu, _):
 
 
 def check_a_program_in_c(fmu, _):
-    """By the standard's own headers: signatures, the variadic logger, states as bytes. Under valgrind if it is there."""
-    if shutil.which("cc") is None:
-        with open("target/skipped-tests", "a") as skipped:
-            skipped.write("program\tcc\t.ci/fmu: a program in C takes a unit of FMI 2.0\n")
-        return "left out: no C compiler"
-    unit = Unit2(fmu)
-    headers = Path(fmpy.__file__).parent / "c-code"
-    library, program = unit.fmu.dll._name, Path(unit.folder) / "importer"
-    flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-O2", f"-I{headers}", "-o", program]
-    subprocess.run(["cc", *flags, Path(__file__).with_suffix(".c"), library], check=True)
-    size, input = 10.4 * unit.step_size, unit.of_causality("input")[0]
-    output = unit.of_causality("output")[0].valueReference
-    resources = (Path(unit.folder) / "resources").as_uri()
-    valgrind = ["valgrind", "-q", "--leak-check=full", "--error-exitcode=9"] if shutil.which("valgrind") else []
-    call = [*valgrind, program, unit.description.guid, resources, repr(size), str(input.valueReference), str(output)]
-    said = subprocess.run(call, check=True, stdout=subprocess.PIPE, text=True).stdout
-    rows = [float(line) for line in said.split()]
-    unit.begin()
-    unit.set(input.name, float(input.start) + 1e-4)
-    expected = []
-    for k in range(20):
-        unit.fmu.doStep(k * size, size)
-        expected += unit.fmu.getReal([output])
-    assert rows == expected + expected[10:], (rows, expected)
-    return "under valgrind" if valgrind else None
+    """With a variadic logger."""
+    return in_c(Unit2(fmu), 2)

@@ -10,7 +10,7 @@ import fmpy
 from fmpy import read_model_description, simulate_fmu
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi3 import fmi3LogMessageCallback
-from fmu_unit import Unit3
+from fmu_unit import Unit3, in_c
 
 
 def check_symbols(fmu, _):
@@ -145,3 +145,7 @@ def check_fmpys_own_run(fmu, _):
         assert "instantiate" in str(error), error
     else:
         raise AssertionError("event mode was accepted")
+
+
+def check_a_program_in_c(fmu, _):
+    return in_c(Unit3(fmu), 3)

@@ -2,9 +2,14 @@
 
 import csv
 import ctypes
+import json
+import math
+import shutil
 import subprocess
+import tomllib
 from pathlib import Path
 
+import fmpy
 from fmpy import extract, read_model_description
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import (
@@ -135,10 +140,38 @@ def run(program, *arguments):
     subprocess.run([program, *arguments], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
+def told(program, *arguments):
+    """What the program says, in JSON."""
+    said = subprocess.run([program, *arguments, "--format", "json"], check=True, capture_output=True)
+    return json.loads(said.stdout)
+
+
 def log_of(program, axis, folder):
     """The columns of what `simulate` makes of the first trajectory."""
     file = Path(folder) / f"{axis}.csv"
     run(program, "simulate", "--axis", f"data/axes/{axis}.toml", "--trajectory", "1", "--log", str(file))
+    return columns(file)
+
+
+def late_log_of(program, axis, folder, compensation, start, standstill):
+    """The same of the trajectory after a standstill (s), compensated."""
+    with open(f"data/axes/{axis}.toml", "rb") as file:
+        move = tomllib.load(file)["trajectory"][0]
+    unit = "mm" if "displacement_mm" in move else "deg"
+    start = 1e3 * start if unit == "mm" else math.degrees(start)
+    names = {f"speed_{unit}_per_s": f"velocity_{unit}_s"}
+    keys = {names.get(key, key.replace("_per_", "_")): value for key, value in move.items()}
+    keys[f"to_{unit}"] = start + keys.pop(f"displacement_{unit}")
+    program_file, file = (Path(folder) / f"{axis}-{compensation}.{end}" for end in ("toml", "csv"))
+    inner = ", ".join(f"{key} = {value!r}" for key, value in keys.items())
+    steps = f"[[steps]]\ndwell = {{ duration_s = {standstill!r} }}\n[[steps]]\nmove = {{ {inner} }}\n"
+    program_file.write_text(f"start_{unit} = {start!r}\n{steps}")
+    arguments = ["--axis", f"data/axes/{axis}.toml", "--compensation", compensation, "--program", str(program_file)]
+    run(program, "simulate", *arguments, "--log", str(file))
+    return columns(file)
+
+
+def columns(file):
     with open(file, newline="") as rows:
         rows = list(csv.reader(rows))
     return {name: [float(row[i]) for row in rows[1:]] for i, name in enumerate(rows[0])}
@@ -160,3 +193,31 @@ def follow(unit, log, first, last):
 def shared(unit, log):
     names = [v.name for v in unit.of_causality("output")]
     return [name for name in names if name.startswith("drive.") and name[6:] in log]
+
+
+def in_c(unit, version):
+    """A program in C by the standard's own headers: signatures, the logger, states as bytes. Under valgrind if it is there."""
+    if shutil.which("cc") is None:
+        with open("target/skipped-tests", "a") as skipped:
+            skipped.write("program\tcc\t.ci/fmu: a program in C takes a unit\n")
+        return "left out: no C compiler"
+    headers = Path(fmpy.__file__).parent / "c-code"
+    library, program = unit.fmu.dll._name, Path(unit.folder) / "importer"
+    flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-O2", f"-I{headers}", "-o", program]
+    subprocess.run(["cc", *flags, Path(__file__).with_name(f"fmu{version}.c"), library], check=True)
+    size, input = 10.4 * unit.step_size, unit.of_causality("input")[0]
+    output = unit.of_causality("output")[0].valueReference
+    folder = Path(unit.folder) / "resources"
+    resources = folder.as_uri() if version == 2 else str(folder)
+    valgrind = ["valgrind", "-q", "--leak-check=full", "--error-exitcode=9"] if shutil.which("valgrind") else []
+    call = [*valgrind, program, unit.description.guid, resources, repr(size), str(input.valueReference), str(output)]
+    said = subprocess.run(call, check=True, stdout=subprocess.PIPE, text=True).stdout
+    rows = [float(line) for line in said.split()]
+    unit.begin()
+    unit.set(input.name, float(input.start) + 1e-4)
+    expected = []
+    for k in range(20):
+        unit.fmu.doStep(k * size, size)
+        expected += unit.read([output])
+    assert rows == expected + expected[10:], (rows, expected)
+    return "under valgrind" if valgrind else None

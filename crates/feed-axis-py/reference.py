@@ -30,6 +30,8 @@ WORDS = {
     "_Layers": "int | ints",
     "_Reference": "(float, float, float)",
     "_Log": "log",
+    "_Toolpath": "Toolpath | G-code | array",
+    "_Estimate": "(float, float)",
     "ArrayLike": "array-like",
 }
 # What the pages of classes say in a sentence, if anything.

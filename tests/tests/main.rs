@@ -7,6 +7,7 @@ mod emps;
 mod heat;
 mod identification;
 mod independent_logs;
+mod joint;
 #[path = "../needs.rs"]
 mod needs;
 mod readme;

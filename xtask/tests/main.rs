@@ -5,3 +5,4 @@ mod cli;
 #[path = "../../crates/feed-axis/tests/common/mod.rs"]
 mod common;
 mod torture;
+mod tuning;

@@ -1,5 +1,6 @@
 //! What a unit refuses.
 
+use axis_pipeline::PipelineError;
 use axis_sim::{AxisFileError, RunStopped, SetupError};
 use thiserror::Error;
 
@@ -70,6 +71,23 @@ pub enum UnitError {
         /// Values.
         values: usize,
     },
+    /// A correction that cannot be in a unit.
+    #[error("no correction by {name}: {why}")]
+    Correction {
+        /// Name of the strategy.
+        name: String,
+        /// Why.
+        #[source]
+        why: Box<PipelineError>,
+    },
+    /// A text that is no correction.
+    #[error(
+        "the correction of the unit cannot be read: {0}; valid: the one that this version has exported"
+    )]
+    CorrectionText(String),
+    /// A compensated unit without its correction.
+    #[error("a compensated unit is made of an axis and a correction; valid: both, or another kind")]
+    NoCorrection,
     /// An axis file that is no TOML table of tables after a parameter was set.
     #[error("the axis file cannot be changed: {0}")]
     Text(String),

@@ -9,7 +9,13 @@ pub enum UnitKind {
     /// The machine alone, without sensors, control and current loops: the motor's torque, force or
     /// current in, motion out.
     Plant,
+    /// The closed loop with a correction in it: the axis follows its references as many control
+    /// periods late as the correction looks ahead.
+    Compensated,
 }
+
+/// What stands in the token of a compensated unit before the digest of its correction.
+const COMPENSATED: &str = "-compensated-";
 
 impl UnitKind {
     /// In words.
@@ -17,22 +23,25 @@ impl UnitKind {
         match self {
             Self::ClosedLoop => "closed loop",
             Self::Plant => "plant alone",
+            Self::Compensated => "compensated closed loop",
         }
     }
 
-    /// How the tokens of such units end.
-    pub(crate) fn mark(self) -> &'static str {
+    /// How the tokens of such units end; `digest` is that of the correction.
+    pub(crate) fn mark(self, digest: u64) -> String {
         match self {
-            Self::ClosedLoop => "",
-            Self::Plant => "-plant",
+            Self::ClosedLoop => String::new(),
+            Self::Plant => "-plant".to_owned(),
+            Self::Compensated => format!("{COMPENSATED}{digest:016x}"),
         }
     }
 
     /// The kind of the unit that has this token.
     pub fn of_token(token: &str) -> Self {
-        match token.ends_with(Self::Plant.mark()) {
-            true => Self::Plant,
-            false => Self::ClosedLoop,
+        match () {
+            () if token.ends_with(&Self::Plant.mark(0)) => Self::Plant,
+            () if token.contains(COMPENSATED) => Self::Compensated,
+            () => Self::ClosedLoop,
         }
     }
 }

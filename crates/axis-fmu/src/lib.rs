@@ -4,7 +4,8 @@
 //! (*Functional Mock-up Interface for Model Exchange and Co-Simulation 2.0.5*,
 //! <https://github.com/modelica/fmi-standard/releases/tag/v2.0.5>).
 //!
-//! - [`UnitKind`]: an axis in its closed loop, or the machine alone.
+//! - [`UnitKind`]: an axis in its closed loop, the same with a correction in it, or the machine alone.
+//! - [`UnitCorrection`]: the strategy that corrects, and what was found for it.
 //! - [`Unit`]: one instance. It takes set points and a force, makes control cycles with
 //!   [`axis_sim::ClosedLoop::step`], and shows what machine and drive do. It refuses whatever
 //!   comes in the wrong order.
@@ -32,10 +33,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod correction;
 mod description;
 mod error;
 mod history;
 mod kind;
+mod library;
 mod measure;
 mod mode;
 mod outputs;
@@ -48,14 +51,14 @@ mod unit;
 mod variables;
 mod version;
 
+pub use correction::UnitCorrection;
 pub use description::description;
 pub use error::UnitError;
 pub use kind::UnitKind;
+pub use library::{LIBRARY_MARK, UnitLibrary, library_file};
 pub use measure::UnitDefinition;
 pub use mode::FmiMode;
-pub use package::{
-    AXIS_FILE, LIBRARY_MARK, MODEL_IDENTIFIER, PackageError, library_file, package, platform,
-};
+pub use package::{AXIS_FILE, CORRECTION_FILE, MODEL_IDENTIFIER, PackageError, package};
 pub use unit::Unit;
 pub use variables::{Variable, VariableKind, Variables};
 pub use version::FmiVersion;

@@ -93,7 +93,9 @@ pub(crate) fn outputs(axis: &Axis, kind: UnitKind) -> Vec<Output> {
             all.push(machine(name, unit, meaning, Source::Current(*read)));
         }
     }
-    let drive = channels(axis).into_iter().filter(|c| !is_reference(c));
+    // A compensated axis follows its references late.
+    let is_told = |c: &LogChannel| kind == UnitKind::Compensated || !is_reference(c);
+    let drive = channels(axis).into_iter().filter(is_told);
     all.extend(drive.map(|channel| {
         let [name, unit] = channel.of_freedom(axis.freedom());
         Output {

@@ -7,6 +7,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use crate::description::description;
+use crate::library::{LIBRARY_MARK, UnitLibrary};
 use crate::unit::Unit;
 use crate::version::FmiVersion;
 
@@ -16,11 +17,8 @@ pub const MODEL_IDENTIFIER: &str = "feed_axis";
 /// The axis file among the unit's resources.
 pub const AXIS_FILE: &str = "axis.toml";
 
-/// What the library of this version holds in its data, and another one does not.
-pub const LIBRARY_MARK: &str = concat!(
-    "library of feed-axis units, version ",
-    env!("CARGO_PKG_VERSION")
-);
+/// The correction of a compensated unit, among them.
+pub const CORRECTION_FILE: &str = "correction.json";
 
 /// Why there is no package.
 #[derive(Debug, Error)]
@@ -30,9 +28,20 @@ pub enum PackageError {
         "the library is not the {LIBRARY_MARK}; valid: the one that `cargo build --release -p feed-axis-fmu` makes of the same sources"
     )]
     Library,
+    /// The file is no library that a unit can have.
+    #[error(
+        "the file is not a library of units: {0}; valid: a shared library for Linux (ELF), Windows (PE) or macOS (Mach-O) on x86_64 or aarch64"
+    )]
+    Header(String),
+    /// A unit without a library cannot be simulated.
+    #[error("the unit has no library; valid: one for each platform, at least one")]
+    NoLibrary,
+    /// Two libraries for one folder.
+    #[error("two libraries belong in binaries/{0} of the unit; valid: one for each platform")]
+    SamePlatform(String),
     /// FMI units of this system are not made here.
     #[error(
-        "no library of units is made for {os} on {arch}; valid: linux or macos on x86_64 or aarch64"
+        "no library of units is made for {os} on {arch}; valid: linux, windows or macos on x86_64 or aarch64"
     )]
     Platform {
         /// Operating system.
@@ -48,39 +57,18 @@ pub enum PackageError {
     Write(#[from] std::io::Error),
 }
 
-/// The platform of this program as that version of FMI names it, and how libraries end there.
-///
-/// # Errors
-/// [`PackageError::Platform`] if the library is not made: elsewhere arrays do not pass as
-/// its functions take them.
-pub fn platform(version: FmiVersion) -> Result<(String, &'static str), PackageError> {
-    let (os, arch) = (std::env::consts::OS, std::env::consts::ARCH);
-    let platform = version.platform(os, arch);
-    let platform = platform.ok_or(PackageError::Platform { os, arch })?;
-    Ok((platform, if os == "macos" { "dylib" } else { "so" }))
-}
-
-/// The name of the library as cargo builds it.
-///
-/// # Errors
-/// As [`platform`].
-pub fn library_file() -> Result<String, PackageError> {
-    Ok(format!(
-        "libfeed_axis_fmu.{}",
-        platform(FmiVersion::default())?.1
-    ))
-}
-
-/// The bytes of the unit's file in that version of FMI, with `library`. The same inputs give the
+/// The bytes of the unit's file in that version of FMI, with these libraries. The same inputs give the
 /// same bytes.
 ///
 /// # Errors
-/// [`PackageError`] if the library is of another version, or none is made for this system.
-pub fn package(unit: &Unit, library: &[u8], version: FmiVersion) -> Result<Vec<u8>, PackageError> {
-    let (platform, end) = platform(version)?;
-    let mark = LIBRARY_MARK.as_bytes();
-    if !library.windows(mark.len()).any(|window| window == mark) {
-        return Err(PackageError::Library);
+/// [`PackageError`] if there is no library, or two belong in one folder.
+pub fn package(
+    unit: &Unit,
+    libraries: &[UnitLibrary<'_>],
+    version: FmiVersion,
+) -> Result<Vec<u8>, PackageError> {
+    if libraries.is_empty() {
+        return Err(PackageError::NoLibrary);
     }
     let description = description(unit, version);
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
@@ -88,7 +76,7 @@ pub fn package(unit: &Unit, library: &[u8], version: FmiVersion) -> Result<Vec<u
         .compression_method(CompressionMethod::Deflated)
         .last_modified_time(DateTime::default())
         .unix_permissions(0o644);
-    let files = [
+    let mut files = vec![
         (
             "modelDescription.xml".to_owned(),
             description.as_bytes(),
@@ -99,12 +87,23 @@ pub fn package(unit: &Unit, library: &[u8], version: FmiVersion) -> Result<Vec<u
             unit.text().as_bytes(),
             plain,
         ),
-        (
-            format!("binaries/{platform}/{MODEL_IDENTIFIER}.{end}"),
-            library,
-            plain.unix_permissions(0o755),
-        ),
     ];
+    files.extend(unit.correction().map(|correction| {
+        let path = format!("resources/{CORRECTION_FILE}");
+        (path, correction.text().as_bytes(), plain)
+    }));
+    for (i, library) in libraries.iter().enumerate() {
+        let platform = library.platform(version)?;
+        let others = libraries.iter().take(i);
+        if others
+            .into_iter()
+            .any(|other| other.platform(version).is_ok_and(|p| p == platform))
+        {
+            return Err(PackageError::SamePlatform(platform));
+        }
+        let path = format!("binaries/{platform}/{MODEL_IDENTIFIER}.{}", library.end());
+        files.push((path, library.bytes(), plain.unix_permissions(0o755)));
+    }
     for (path, bytes, options) in files {
         archive.start_file(path, options)?;
         archive.write_all(bytes)?;

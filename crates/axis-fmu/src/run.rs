@@ -1,9 +1,11 @@
 //! A closed loop between two communication steps.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
+use axis_pipeline::strategies::CycleLaw;
 use axis_sim::{Axis, ClosedLoop, Cycle, LoopState, Start};
-use compensator::{Compensator, Correction, Sample};
+use compensator::{Compensator, Correction, Reference, Sample};
 use trajectories::Setpoint;
 
 use crate::error::UnitError;
@@ -27,18 +29,45 @@ pub(crate) struct Run {
     /// Of a cycle that has begun: what its sample took, and the state where it is looked at between
     /// samples.
     begun: Option<(Given, Option<LoopState>)>,
+    law: Option<CycleLaw>,
+    /// References that have come and are not followed yet, the oldest first: as many as the
+    /// correction looks ahead.
+    ahead: VecDeque<Setpoint>,
 }
 
-/// What is added to the controller: the motor's input.
-struct Offset(f64);
+/// What makes a closed loop a compensated one.
+#[derive(Clone, Debug)]
+pub(crate) struct Corrected<'a> {
+    /// At the start of a motion; none where it is switched off.
+    pub law: Option<&'a CycleLaw>,
+    /// Control periods by which references are followed late.
+    pub look_ahead: usize,
+}
 
-impl Compensator for Offset {
+/// What is added to the controller: the motor's input, and the correction.
+struct Added<'a> {
+    offset: f64,
+    law: Option<&'a mut CycleLaw>,
+    newest: Reference,
+}
+
+impl Compensator for Added<'_> {
     fn reset(&mut self) {}
 
-    fn correct(&mut self, _: &Sample) -> Correction {
-        Correction {
+    fn correct(&mut self, sample: &Sample) -> Correction {
+        let own = Correction {
             position: 0.0,
-            command: self.0,
+            command: self.offset,
+        };
+        match &mut self.law {
+            None => own,
+            Some(law) => {
+                let asked = law.correct(sample, &self.newest);
+                Correction {
+                    position: asked.position,
+                    command: asked.command + self.offset,
+                }
+            }
         }
     }
 }
@@ -99,9 +128,13 @@ pub(crate) fn motor_torque(axis: &Axis, given: &Given) -> f64 {
 
 impl Run {
     /// At rest at the reference. The drive shows what it would sample there.
-    pub fn begin(axis: &Axis, given: &Given) -> Result<Self, UnitError> {
+    pub fn begin(axis: &Axis, given: &Given, corrected: Corrected<'_>) -> Result<Self, UnitError> {
         let closed_loop = ClosedLoop::new(axis)?;
         let state = closed_loop.start(&Start::at(given.reference.position))?;
+        let rest = Setpoint {
+            position: given.reference.position,
+            ..Setpoint::default()
+        };
         let mut run = Self {
             closed_loop: Arc::new(closed_loop),
             state,
@@ -109,6 +142,8 @@ impl Run {
             cycles: 0,
             past: 0.0,
             begun: None,
+            law: corrected.law.cloned(),
+            ahead: std::iter::repeat_n(rest, corrected.look_ahead).collect(),
         };
         let mut ahead = run.clone();
         ahead.cycle(given)?;
@@ -139,12 +174,18 @@ impl Run {
         if self.past > SAME_POINT {
             let given = self.begun.take().map_or(given.clone(), |(begun, _)| begun);
             let share = if exact { self.past } else { 0.0 };
-            let mut offset = self.offset(&given);
-            let references = [&given.reference; 2];
+            // The cycle is only looked at: what it does to correction and references is undone.
+            let (mut law, mut ahead) = (self.law.clone(), self.ahead.clone());
+            let [now, next] = followed(&mut ahead, &given.reference);
+            let mut added = Added {
+                offset: self.offset(&given),
+                law: law.as_mut(),
+                newest: reference_of(&given.reference),
+            };
             let mut from = self.state.clone();
             from.set_outer_load(given.load);
             let (state, cycle) =
-                (self.closed_loop).within(&from, references, &mut offset, share)?;
+                (self.closed_loop).within(&from, [&now, &next], &mut added, share)?;
             self.cycle = cycle;
             self.begun = Some((given, exact.then_some(state)));
         }
@@ -153,16 +194,37 @@ impl Run {
 
     /// One control cycle.
     fn cycle(&mut self, given: &Given) -> Result<(), UnitError> {
-        let mut offset = self.offset(given);
-        let references = [&given.reference; 2];
+        let [now, next] = followed(&mut self.ahead, &given.reference);
+        let mut added = Added {
+            offset: self.offset(given),
+            law: self.law.as_mut(),
+            newest: reference_of(&given.reference),
+        };
         self.state.set_outer_load(given.load);
-        self.cycle = (self.closed_loop).step(&mut self.state, references, &mut offset, |_| ())?;
+        let (state, references) = (&mut self.state, [&now, &next]);
+        self.cycle = (self.closed_loop).step(state, references, &mut added, |_| ())?;
         self.cycles += 1;
         Ok(())
     }
 
-    fn offset(&self, given: &Given) -> Offset {
+    /// What the motor's input adds to the command, in the actuator's unit.
+    fn offset(&self, given: &Given) -> f64 {
         let axis = self.closed_loop.axis();
-        Offset(motor_torque(axis, given) / axis.torque_constant())
+        motor_torque(axis, given) / axis.torque_constant()
+    }
+}
+
+/// The references of a cycle and of the next, `newest` having come.
+fn followed(ahead: &mut VecDeque<Setpoint>, newest: &Setpoint) -> [Setpoint; 2] {
+    ahead.push_back(*newest);
+    let now = ahead.pop_front().unwrap_or(*newest);
+    [now, ahead.front().copied().unwrap_or(*newest)]
+}
+
+fn reference_of(setpoint: &Setpoint) -> Reference {
+    Reference {
+        position: setpoint.position,
+        velocity: setpoint.velocity,
+        acceleration: setpoint.acceleration,
     }
 }

@@ -6,7 +6,7 @@ use crate::error::UnitError;
 use crate::kind::UnitKind;
 use crate::outputs::Source;
 use crate::plant::PlantRun;
-use crate::run::{Given, Run};
+use crate::run::{Corrected, Given, Run};
 
 /// A simulation between two communication steps.
 #[derive(Clone, Debug)]
@@ -17,9 +17,16 @@ pub(crate) enum Simulated {
 
 impl Simulated {
     /// At rest where the inputs say.
-    pub fn begin(kind: UnitKind, axis: &Axis, given: &Given) -> Result<Self, UnitError> {
+    pub fn begin(
+        kind: UnitKind,
+        axis: &Axis,
+        given: &Given,
+        corrected: Corrected<'_>,
+    ) -> Result<Self, UnitError> {
         Ok(match kind {
-            UnitKind::ClosedLoop => Self::ClosedLoop(Box::new(Run::begin(axis, given)?)),
+            UnitKind::ClosedLoop | UnitKind::Compensated => {
+                Self::ClosedLoop(Box::new(Run::begin(axis, given, corrected)?))
+            }
             UnitKind::Plant => Self::Plant(PlantRun::begin(axis, given)?),
         })
     }

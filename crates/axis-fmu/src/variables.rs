@@ -14,6 +14,11 @@ const EXACT_BETWEEN: &str = "unit.exact_between_samples";
 const EXACT_MEANING: &str = "0 or 1: at a communication point between two samples of the controller, \
      machine outputs are those of the last sample (0) or of that point (1)";
 
+/// The parameter of whether a compensated unit corrects.
+const COMPENSATION: &str = "unit.compensation";
+const COMPENSATION_MEANING: &str = "0 or 1: without (0) or with (1) the correction; references are \
+     followed equally late";
+
 const START_MEANING: &str = "position of the load at the start, at rest";
 
 /// The table of the axis file that a plant does without.
@@ -59,8 +64,29 @@ pub enum VariableKind {
     /// A parameter: 1 where outputs at a point between two samples show the machine as it is there,
     /// 0 where they show it as of the last sample. Set before the initialisation ends.
     ExactBetween,
+    /// A parameter of a compensated unit: 1 where it corrects, 0 where it follows its references as
+    /// late without. Set before the initialisation ends.
+    Compensation,
     /// A parameter of a plant: where it begins, m or rad. Set before the initialisation ends.
     StartPosition,
+}
+
+impl VariableKind {
+    /// Whether it is a parameter: set before the initialisation ends.
+    pub fn is_parameter(&self) -> bool {
+        match self {
+            Self::Parameter { .. }
+            | Self::ExactBetween
+            | Self::Compensation
+            | Self::StartPosition => true,
+            Self::Time | Self::Input(_) | Self::Output(_) => false,
+        }
+    }
+
+    /// Whether it is a switch: 0 or 1.
+    pub(crate) fn is_switch(&self) -> bool {
+        matches!(self, Self::ExactBetween | Self::Compensation)
+    }
 }
 
 /// An input.
@@ -111,7 +137,7 @@ impl Variables {
             let kind = VariableKind::Output(Output(output.source));
             all.push(&output.name, output.meaning, output.unit, kind, None);
         }
-        let takes = |table: &str| kind == UnitKind::ClosedLoop || table != CONTROL;
+        let takes = |table: &str| kind != UnitKind::Plant || table != CONTROL;
         let numbers = parameters(name, text)?;
         for parameter in numbers.into_iter().filter(|p| takes(&p.table)) {
             let kind = VariableKind::Parameter {
@@ -129,11 +155,16 @@ impl Variables {
         Ok(all)
     }
 
-    /// The unit's own parameter.
+    /// The unit's own parameters.
     fn push_own(&mut self, kind: UnitKind, axis: &Axis) {
+        if kind == UnitKind::Compensated {
+            let own = VariableKind::Compensation;
+            self.push(COMPENSATION, COMPENSATION_MEANING, "", own, Some(1.0));
+            self.limit([0.0, 1.0]);
+        }
         let stroke = &axis.stroke;
         let (name, meaning, unit, own, start, limits) = match (kind, axis.freedom()) {
-            (UnitKind::ClosedLoop, _) => {
+            (UnitKind::ClosedLoop | UnitKind::Compensated, _) => {
                 let own = VariableKind::ExactBetween;
                 (EXACT_BETWEEN, EXACT_MEANING, "", own, 0.0, [0.0, 1.0])
             }
@@ -150,6 +181,11 @@ impl Variables {
             }
         };
         self.push(name, meaning, unit, own, Some(start));
+        self.limit(limits);
+    }
+
+    /// Limits of the last one.
+    fn limit(&mut self, limits: [f64; 2]) {
         if let Some(last) = self.0.last_mut() {
             last.limits = Some(limits);
         }

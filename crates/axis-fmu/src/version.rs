@@ -30,12 +30,14 @@ impl FmiVersion {
         let system = match os {
             "linux" => "linux",
             "macos" => "darwin",
+            "windows" => "windows",
             _ => return None,
         };
         if !matches!(arch, "x86_64" | "aarch64") {
             return None;
         }
         Some(match self {
+            Self::V2 if os == "windows" => "win64".to_owned(),
             Self::V2 => format!("{system}64"),
             Self::V3 => format!("{arch}-{system}"),
         })
@@ -58,7 +60,8 @@ mod tests {
         let named = |two: &str, three: &str| [Some(two.to_owned()), Some(three.to_owned())];
         assert_eq!(of("linux", "x86_64"), named("linux64", "x86_64-linux"));
         assert_eq!(of("macos", "aarch64"), named("darwin64", "aarch64-darwin"));
-        assert_eq!(of("windows", "x86_64"), [None, None]);
+        assert_eq!(of("windows", "x86_64"), named("win64", "x86_64-windows"));
+        assert_eq!(of("freebsd", "x86_64"), [None, None]);
         assert_eq!(of("linux", "x86"), [None, None]);
     }
 }

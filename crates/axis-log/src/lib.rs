@@ -122,6 +122,7 @@ mod parquet_hybrid;
 mod parquet_pages;
 #[cfg(feature = "parquet")]
 mod parquet_table;
+mod plus_minus;
 pub mod quality;
 mod read;
 mod read_error;
@@ -141,6 +142,7 @@ pub use error::{CsvError, CsvProblem, LogError};
 pub use import::{AxisProposal, MappingProposal, ProposedColumn, propose};
 pub use log::{Log, TIME_CHANNEL};
 pub use mapping::{ColumnMap, ColumnUnit, Mapping, MappingError};
+pub use plus_minus::{PlusMinus, fixed, never_zero};
 pub use read::read_log;
 pub use read_error::{Place, ReadError, ReadProblem};
 pub use table::OtherUnit;

@@ -183,6 +183,59 @@ pub struct MachineFile {
     pub seconds: Vec<Axis>,
 }
 
+/// A drive that a machine file names.
+#[derive(Clone, Debug)]
+pub struct FileDrive<'a> {
+    /// Coordinate that it moves, from 0.
+    pub axis: usize,
+    /// Its axis file.
+    pub file: PathBuf,
+    /// The axis as that file has it.
+    pub nominal: &'a Axis,
+}
+
+impl MachineAxes {
+    /// The files of the coordinates, in their order.
+    pub fn files(&self) -> Vec<&PathBuf> {
+        [Some(&self.x), Some(&self.y), self.z.as_ref()]
+            .into_iter()
+            .flatten()
+            .collect()
+    }
+}
+
+impl MachineText {
+    /// Reads the text of a machine file; `file` stands for it in messages.
+    ///
+    /// # Errors
+    /// [`MachineFileError::Text`] and [`MachineFileError::Value`]: key, and what would be valid.
+    pub fn parse(file: &Path, content: &str) -> Result<Self, MachineFileError> {
+        let refuse = |what, valid| {
+            Err(MachineFileError::Value {
+                file: file.to_owned(),
+                what,
+                valid,
+            })
+        };
+        let text: Self = toml::from_str(content).map_err(|error| MachineFileError::Text {
+            file: file.to_owned(),
+            what: toml_message(content, &error),
+        })?;
+        if text.schema != 1 {
+            return refuse(format!("schema is {}", text.schema), "1");
+        }
+        let count = text.axes.files().len();
+        let pairs = text.coupling.iter().flat_map(|c| [c.of, c.by]);
+        let bases = text.base.iter().map(|b| b.axis);
+        let others = bases.chain(text.gantry.iter().map(|g| g.axis));
+        if pairs.chain(others).any(|name| name as usize >= count) {
+            let what = "z is named, but [axes] has no z".to_owned();
+            return refuse(what, "names of [axes]");
+        }
+        Ok(text)
+    }
+}
+
 impl MachineFile {
     /// Reads a machine file and its axis files.
     ///
@@ -194,47 +247,45 @@ impl MachineFile {
             file: file.clone(),
             source,
         })?;
-        let text: MachineText =
-            toml::from_str(&content).map_err(|error| MachineFileError::Text {
-                file: file.clone(),
-                what: toml_message(&content, &error),
-            })?;
-        if text.schema != 1 {
-            return Err(MachineFileError::Value {
-                file,
-                what: format!("schema is {}", text.schema),
-                valid: "1",
-            });
-        }
+        let text = MachineText::parse(path, &content)?;
         let folder = path.parent().unwrap_or(Path::new("."));
         let read = |name: &PathBuf| Axis::read(&folder.join(name)).map_err(Box::new);
-        let MachineAxes { x, y, z } = &text.axes;
-        let axes = [Some(x), Some(y), z.as_ref()];
-        let axes = axes
-            .into_iter()
-            .flatten()
-            .map(read)
-            .collect::<Result<Vec<_>, _>>()?;
-        let named = |name: AxisName| name as usize >= axes.len();
-        let pairs = text.coupling.iter().flat_map(|c| [c.of, c.by]);
-        let others = text
-            .base
-            .iter()
-            .map(|b| b.axis)
-            .chain(text.gantry.iter().map(|g| g.axis));
-        if pairs.chain(others).any(named) {
+        let axes = text.axes.files().into_iter().map(read);
+        let axes = axes.collect::<Result<Vec<_>, _>>()?;
+        let seconds = text.gantry.iter().map(|gantry| read(&gantry.second));
+        let seconds = seconds.collect::<Result<_, _>>()?;
+        Self::of_parts(text, file, axes, seconds)
+    }
+
+    /// Of the text of a file, its name, the axes that it names and the second drives of its gantries, each in the text's order.
+    ///
+    /// # Errors
+    /// [`MachineFileError::Value`] if there are not as many as the text names.
+    pub fn of_parts(
+        text: MachineText,
+        path: PathBuf,
+        axes: Vec<Axis>,
+        seconds: Vec<Axis>,
+    ) -> Result<Self, MachineFileError> {
+        let named = (text.axes.files().len(), text.gantry.len());
+        if (axes.len(), seconds.len()) != named {
             return Err(MachineFileError::Value {
-                file,
-                what: "z is named, but [axes] has no z".to_owned(),
-                valid: "names of [axes]",
+                file: path,
+                what: format!(
+                    "{} axes and {} gantries are named, but {} and {} axes are there for them",
+                    named.0,
+                    named.1,
+                    axes.len(),
+                    seconds.len()
+                ),
+                valid: "one axis for each",
             });
         }
-        let seconds = text.gantry.iter().map(|gantry| read(&gantry.second));
         Ok(Self {
-            seconds: seconds.collect::<Result<_, _>>()?,
-            axes,
-            path: file,
             text,
+            path,
+            axes,
+            seconds,
         })
     }
 
@@ -265,6 +316,27 @@ impl MachineFile {
     /// How many coordinates it has: 2 or 3.
     pub fn dimensions(&self) -> usize {
         self.axes.len()
+    }
+
+    /// Its drives in the order of [`CoupledMachine::drives`](crate::CoupledMachine::drives): of each coordinate that of `[axes]`, then
+    /// the second of its gantry.
+    pub fn drives(&self) -> Vec<FileDrive<'_>> {
+        let firsts = self.text.axes.files();
+        let mut drives = Vec::new();
+        for (axis, nominal) in self.axes.iter().enumerate() {
+            let second = self.text.gantry.iter().zip(&self.seconds);
+            // Of two gantries of one axis the later one holds.
+            let second = second.rev().find(|(g, _)| g.axis as usize == axis);
+            drives.push((axis, firsts.get(axis).copied(), nominal));
+            drives.extend(second.map(|(g, nominal)| (axis, Some(&g.second), nominal)));
+        }
+        let folder = self.path.parent().unwrap_or(Path::new("."));
+        let drive = |(axis, file, nominal): (usize, Option<&PathBuf>, _)| FileDrive {
+            axis,
+            file: file.map_or_else(PathBuf::new, |file| folder.join(file)),
+            nominal,
+        };
+        drives.into_iter().map(drive).collect()
     }
 
     /// What lies between its axes, SI units.

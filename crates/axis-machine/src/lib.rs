@@ -48,6 +48,7 @@ mod laps;
 mod machine;
 mod motion;
 mod run;
+mod running;
 mod straightness;
 mod traced;
 
@@ -56,8 +57,8 @@ pub use coupling::{AxisCoupling, Coupling};
 pub use driven::{Driven, trace};
 pub use error::{CircleFitError, MachineError};
 pub use file::{
-    AxisName, BaseText, CouplingText, GantryText, MachineAxes, MachineFile, MachineFileError,
-    MachineText,
+    AxisName, BaseText, CouplingText, FileDrive, GantryText, MachineAxes, MachineFile,
+    MachineFileError, MachineText,
 };
 pub use gantry::GantryBeam;
 pub use identify::{CircleEstimate, CirclesFound, MeasuredCircle, fit_circles};
@@ -65,6 +66,7 @@ pub use laps::{DriveSensors, Laps, LearnedLap};
 pub use machine::{CoupledMachine, MachineDrive};
 pub use motion::AxisMotion;
 pub use run::{DriveLaw, Lap, MachineState};
+pub use running::{AxisGiven, RunningMachine};
 pub use straightness::Straightness;
 pub use traced::Traced;
 

@@ -8,7 +8,7 @@ use trajectories::{Motion, Setpoint};
 
 use crate::base::BaseState;
 use crate::error::{MOST_SAMPLES, MachineError};
-use crate::machine::CoupledMachine;
+use crate::machine::{CoupledMachine, MachineDrive};
 use crate::motion::{AxisMotion, HALF_WINDOW};
 use crate::traced::Traced;
 
@@ -58,7 +58,7 @@ impl<const D: usize> CoupledMachine<D> {
     /// [`MachineError::Setup`] if a load cannot be there.
     pub fn start(&self, motions: &[Arc<AxisMotion<D>>]) -> Result<MachineState, MachineError> {
         self.one_each(motions.len())?;
-        let start = |(drive, motion): (&crate::MachineDrive, &Arc<AxisMotion<D>>)| {
+        let start = |(drive, motion): (&MachineDrive, &Arc<AxisMotion<D>>)| {
             let begin = Start::at(motion.at(0.0).position);
             let started = drive.closed_loop.start(&begin);
             started.map_err(|source| MachineError::Setup {
@@ -66,10 +66,8 @@ impl<const D: usize> CoupledMachine<D> {
                 source,
             })
         };
-        Ok(MachineState {
-            loops: (self.drives().iter().zip(motions).map(start)).collect::<Result<_, _>>()?,
-            bases: vec![BaseState::default(); D],
-        })
+        let loops = self.drives().iter().zip(motions).map(start);
+        Ok(MachineState::settled::<D>(loops.collect::<Result<_, _>>()?))
     }
 
     /// Runs all drives along their motions ([`CoupledMachine::motions`]) from `state`, which is left as the machine is at the end.
@@ -111,18 +109,16 @@ impl<const D: usize> CoupledMachine<D> {
                 }
             }
             let before = self.speeds(state);
-            self.push(state);
+            let forces = self.forces(state);
+            for (own, force) in state.loops.iter_mut().zip(forces) {
+                force
+                    .into_iter()
+                    .for_each(|force| own.set_outer_load(force));
+            }
             for (d, drive) in going.iter_mut().enumerate() {
                 self.go(d, drive, &mut laws[d], &mut state.loops[d])?;
             }
-            let after = self.speeds(state);
-            for (axis, base) in self.bases.iter().enumerate() {
-                if let Some(base) = base {
-                    let acceleration = (after[axis] - before[axis]) / self.period;
-                    state.bases[axis] =
-                        base.advanced(&state.bases[axis], acceleration, self.period);
-                }
-            }
+            self.move_bases(state, &before);
         }
         Ok(self.lap(first, going, bases))
     }
@@ -161,13 +157,32 @@ impl<const D: usize> CoupledMachine<D> {
         })
     }
 
+    /// Moves the bases by the period in which the speeds of the loads were `before` (m/s) at first.
+    pub(crate) fn move_bases(&self, state: &mut MachineState, before: &[f64; D]) {
+        let after = self.speeds(state);
+        for (axis, base) in self.bases.iter().enumerate() {
+            if let Some(base) = base {
+                let acceleration = (after[axis] - before[axis]) / self.period;
+                state.bases[axis] = base.advanced(&state.bases[axis], acceleration, self.period);
+            }
+        }
+    }
+
+    /// By how much each base moves the tool, m.
+    pub(crate) fn bases_at_tool(&self, state: &MachineState) -> [f64; D] {
+        std::array::from_fn(|axis| {
+            let base = self.bases[axis];
+            base.map_or(0.0, |base| base.at_tool * state.bases[axis].displacement)
+        })
+    }
+
     /// Speed of each coordinate's load, of a beam that of its tool, m/s.
-    fn speeds(&self, state: &MachineState) -> [f64; D] {
+    pub(crate) fn speeds(&self, state: &MachineState) -> [f64; D] {
         self.of_coordinates(|d| state.loops[d].plant().seen().speed)
     }
 
     /// Of each coordinate: the value of its drive, or that between the drives of a beam.
-    fn of_coordinates(&self, value: impl Fn(usize) -> f64) -> [f64; D] {
+    pub(crate) fn of_coordinates(&self, value: impl Fn(usize) -> f64) -> [f64; D] {
         let mut all = [0.0; D];
         for (d, drive) in self.drives().iter().enumerate() {
             let second = d > 0 && self.drives()[d - 1].axis == drive.axis;
@@ -180,13 +195,13 @@ impl<const D: usize> CoupledMachine<D> {
         all
     }
 
-    /// Sets the forces that drives get from base and beam in the coming period.
-    fn push(&self, state: &mut MachineState) {
-        for (d, drive) in self.drives().iter().enumerate() {
+    /// The force on each drive's load by base and beam in the coming period, N; none if there is neither.
+    pub(crate) fn forces(&self, state: &MachineState) -> Vec<Option<f64>> {
+        let one = |(d, drive): (usize, &MachineDrive)| {
             let base = self.bases[drive.axis];
             let beam = self.beams[drive.axis];
             if base.is_none() && beam.is_none() {
-                continue;
+                return None;
             }
             let mut force = base.map_or(0.0, |base| {
                 drive.mass() * base.acceleration_ahead(&state.bases[drive.axis], self.period)
@@ -204,8 +219,9 @@ impl<const D: usize> CoupledMachine<D> {
                 let on_first = beam.force(positions, seen.map(|s| s.speed), self.period);
                 force += if d == first { on_first } else { -on_first };
             }
-            state.loops[d].set_outer_load(force);
-        }
+            Some(force)
+        };
+        self.drives().iter().enumerate().map(one).collect()
     }
 
     /// From one common instant to the next.
@@ -291,6 +307,12 @@ impl<const D: usize> CoupledMachine<D> {
 }
 
 impl MachineState {
+    /// Loops that have settled, on bases at standstill.
+    pub(crate) fn settled<const D: usize>(loops: Vec<LoopState>) -> Self {
+        let bases = vec![BaseState::default(); D];
+        Self { loops, bases }
+    }
+
     /// The same state at time 0, for the next run.
     pub(crate) fn at_rest(self) -> Self {
         Self {

@@ -4,6 +4,8 @@ mod coupled;
 mod file;
 mod identify;
 mod moving;
+mod pairs;
+mod running;
 
 use axis_machine::{AxisMotion, Driven, MachineError, trace};
 use axis_sim::{Axis, ClosedLoop};

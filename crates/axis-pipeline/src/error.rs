@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::strategies::Need;
+use crate::strategies::{CYCLE_BY_CYCLE, Need};
 
 impl PipelineError {
     /// Whether a strategy cannot be made for this axis at all: another one may be.
@@ -73,6 +73,9 @@ pub enum PipelineError {
     /// There is no strategy of that name.
     #[error("there is no strategy \"{0}\"; valid: those of the registry")]
     NoStrategy(String),
+    /// A strategy that does not run cycle by cycle.
+    #[error("the strategy \"{0}\" does not run cycle by cycle; valid: {names}", names = CYCLE_BY_CYCLE.join(", "))]
+    NotByCycle(String),
     /// Two strategies that results could not tell apart.
     #[error("two of the strategies have the name \"{0}\"; valid: each name once")]
     SameName(&'static str),

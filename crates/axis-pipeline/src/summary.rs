@@ -34,11 +34,48 @@ pub struct Summary {
     pub trajectories: Vec<TrajectorySummary>,
     /// The network.
     pub network: NetworkSummary,
+    /// Margins of the drive's loops, not compensated. Files of earlier versions have none.
+    #[serde(default)]
+    pub loops: LoopsSummary,
 }
 
 impl Summary {
     /// Version of the layout that this program writes.
     pub const SCHEMA: u32 = 1;
+}
+
+/// Margins of the drive's loops on model and machine, which are the same where no machine was given;
+/// null where the axis has no position controller.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LoopsSummary {
+    /// The model.
+    pub model: Option<MarginsSummary>,
+    /// What stands for the machine.
+    pub machine: Option<MarginsSummary>,
+}
+
+/// Margins over all cases: start, ends and middle of the stroke, the load's mass 10 % less, as it is
+/// and 40 % more, sliding and stuck. Gain, phase and delay are those of the loop cut at the command,
+/// the least of all cases; null where a case is not stable, or no case has that margin.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MarginsSummary {
+    /// Cases.
+    pub cases: usize,
+    /// Cases in which the loop is not stable.
+    pub unstable: usize,
+    /// Maximum sensitivity, max 1/|1 + L|, of all cases, the loop cut at the command or at the
+    /// position.
+    pub sensitivity: Option<f64>,
+    /// The same with one more cycle of delay.
+    pub sensitivity_late: Option<f64>,
+    /// Factor above 1 of the loop's gain at which it gets unstable.
+    pub gain_up: Option<f64>,
+    /// Factor below 1 at which it does.
+    pub gain_down: Option<f64>,
+    /// Phase margin, degrees.
+    pub phase_deg: Option<f64>,
+    /// Delay that the loop takes, s.
+    pub delay_s: Option<f64>,
 }
 
 /// Figures of one trajectory.

@@ -335,8 +335,13 @@ fn content(cell: &Cell) -> Markup {
     }
 }
 
-/// A number with a typographic minus, and without one on a rounded zero.
-pub(crate) fn fixed(value: f64, digits: usize) -> String {
+/// A number of so many decimals with a typographic minus, and without one on a rounded zero.
+///
+/// ```
+/// assert_eq!(axis_report::fixed(-12.34, 1), "\u{2212}12.3");
+/// assert_eq!(axis_report::fixed(-0.0004, 3), "0.000");
+/// ```
+pub fn fixed(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
     match text.strip_prefix('-') {
         Some(rest) if rest.bytes().any(|b| (b'1'..=b'9').contains(&b)) => format!("\u{2212}{rest}"),

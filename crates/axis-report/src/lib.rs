@@ -66,7 +66,7 @@ mod write;
 
 pub use error::{PageWriteError, PlotAxis, ReportError};
 pub use figure::{Figure, Scale, Series, Style};
-pub use html::render;
+pub use html::{fixed, render};
 pub use page::{Block, KeyValues, Notice, Page, Section};
 pub use table::{Cell, ColumnGroup, Mark, Table};
 pub use unit::engineering;

@@ -1,6 +1,6 @@
 //! A strategy with everything that its export needs.
 
-use axis_pipeline::strategies::{Predictors, assumed_feedback};
+use axis_pipeline::strategies::{CYCLE_BY_CYCLE, CycleLaw, PositionLaw, Predictors};
 use axis_sim::Axis;
 use compensator::{Guard, GuardLimits, Kinematics};
 
@@ -8,16 +8,7 @@ use crate::law::{ExportedLaw, NetworkLaw, PlanLaw, Position};
 use crate::{ExportError, c};
 
 /// Names of the strategies that can be exported.
-pub const EXPORTED: &[&str] = &[
-    "network",
-    "network_lugre",
-    "network_lugre_printed",
-    "transfer_function",
-    "transfer_function_lugre",
-    "lugre",
-    "plan",
-    "feedback",
-];
+pub const EXPORTED: &[&str] = CYCLE_BY_CYCLE;
 
 /// Strategies that learn between moves, and what of them runs cycle by cycle.
 const LEARNING: &[(&str, &str)] = &[
@@ -114,52 +105,36 @@ impl Units {
 }
 
 fn law(predictors: &Predictors, name: &str) -> Result<ExportedLaw, ExportError> {
-    let network = || -> Result<_, ExportError> {
-        Ok(Position::Network(NetworkLaw::of(&predictors.network()?)?))
-    };
-    let filter = |model| -> Result<_, ExportError> {
-        Ok(Position::Transfer(Box::new(predictors.leading(model)?)))
-    };
-    let friction = || predictors.friction(predictors.identified()?);
-    let printed = || predictors.friction(predictors.axis.friction.law);
-    let (position, friction) = match name {
-        "network" => (network()?, None),
-        "network_lugre" => (network()?, Some(friction()?)),
-        "network_lugre_printed" => (network()?, Some(printed()?)),
-        "transfer_function" => (filter(predictors.transfer()?.alone)?, None),
-        "transfer_function_lugre" => {
-            let model = predictors.transfer()?.with_feedforward;
-            (filter(model)?, Some(friction()?))
-        }
-        "lugre" => (Position::Nothing, Some(friction()?)),
-        "plan" | "feedback" => return planned(predictors, name),
-        _ => return Err(refused(name)),
-    };
+    if !EXPORTED.contains(&name) {
+        return Err(refused(name));
+    }
+    if matches!(name, "plan" | "feedback") {
+        can_be_planned(predictors, name)?;
+    }
+    let law = CycleLaw::of(predictors, name)?;
     Ok(ExportedLaw {
-        position,
-        friction,
-        plan: None,
+        position: match law.position {
+            PositionLaw::Nothing => Position::Nothing,
+            PositionLaw::Network(network) => Position::Network(NetworkLaw::of(&network)?),
+            PositionLaw::Transfer(filter) => Position::Transfer(filter),
+        },
+        friction: law.friction,
+        plan: law.plan.map(|plan| PlanLaw {
+            planner: plan.planner,
+            feedback: plan.feedback,
+        }),
     })
 }
 
-/// The plan of the model, with the feedback around it or without.
-fn planned(predictors: &Predictors, name: &str) -> Result<ExportedLaw, ExportError> {
-    let assumed_model = predictors.assumed_model()?;
-    if assumed_model.kinematics != Kinematics::default() {
-        return Err(ExportError::Unsupported {
-            name: name.to_owned(),
-            what: "its model has free travel or a kinematic error of the transmission",
-            valid: "a model without them, or another strategy".to_owned(),
-        });
+/// Whether the exported planner has all that the model asks for.
+fn can_be_planned(predictors: &Predictors, name: &str) -> Result<(), ExportError> {
+    if predictors.assumed_model()?.kinematics == Kinematics::default() {
+        return Ok(());
     }
-    let feedback = match name {
-        "feedback" => Some(assumed_feedback(predictors)?),
-        _ => None,
-    };
-    Ok(ExportedLaw {
-        position: Position::Nothing,
-        friction: None,
-        plan: Some(PlanLaw::new(&assumed_model, feedback)?),
+    Err(ExportError::Unsupported {
+        name: name.to_owned(),
+        what: "its model has free travel or a kinematic error of the transmission",
+        valid: "a model without them, or another strategy".to_owned(),
     })
 }
 

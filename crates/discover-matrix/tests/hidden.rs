@@ -153,6 +153,7 @@ fn backlash_is_named_and_measured() {
 }
 
 #[test]
+#[ignore = "slow: .ci/release.d/05-slow-tests.sh"]
 fn a_force_in_time_is_found_with_its_edges() {
     let hidden = hide_all(vec![("process-force", vec![-25.0, 1.37, 2.03])], 14);
     let found = find(&hidden, &Settings::default());
@@ -171,6 +172,7 @@ fn a_force_in_time_is_found_with_its_edges() {
 /// A load that came up with the log, and is hardly more than noise in its first 3 ms: its mean over
 /// the rest was taken for held, and 0.1 µm RMS was left, nearly all before the first move.
 #[test]
+#[ignore = "slow: .ci/release.d/05-slow-tests.sh"]
 fn a_load_that_repeats_is_not_held_before_it_acts() {
     let hidden = hide_all(vec![("cyclic-load", vec![35.34, 0.754, -2.653])], 5);
     let found = find(&hidden, &Settings::default());
@@ -223,6 +225,7 @@ fn two_effects_that_nearly_cancel_are_both_named() {
 /// friction looks better with a coefficient for each direction; and the gain
 /// makes one voltage worse as long as the friction at one place is not there.
 #[test]
+#[ignore = "slow: .ci/release.d/05-slow-tests.sh"]
 fn what_was_named_too_widely_is_named_again_beside_the_others() {
     let three = vec![
         ("position-dependent-friction", vec![53.7, 0.689, 0.039]),
@@ -297,6 +300,7 @@ fn a_fit_follows_a_narrow_curve() {
 /// changed between the logs. Viscous friction is right, and explains the currents; but the
 /// change made up for what it does to the motor's angle.
 #[test]
+#[ignore = "slow: .ci/release.d/05-slow-tests.sh"]
 fn nothing_is_given_that_makes_a_channel_of_check_motion_worse() {
     let friction = ("viscous-friction", vec![4000.0]);
     let fit = hide_all(vec![friction.clone()], 21);
@@ -412,6 +416,7 @@ fn what_is_missing_is_no_noise() {
 
 /// A friction that falls with speed, where the library has none, is a form of the axis' own.
 #[test]
+#[ignore = "slow: .ci/release.d/05-slow-tests.sh"]
 fn a_fall_of_the_own_friction_is_another_form_of_it() {
     let settings = with_only(&[]);
     let hidden = hide_all(vec![("stribeck-friction", vec![60.0, 0.008])], 43);
@@ -422,6 +427,7 @@ fn a_fall_of_the_own_friction_is_another_form_of_it() {
 
 /// A body that swings as fast as the library has it does what a mass does, and is none beside it.
 #[test]
+#[ignore = "slow: .ci/release.d/05-slow-tests.sh"]
 fn a_body_that_swings_too_fast_to_be_seen_is_no_name() {
     let hidden = hide_in(&stage(), vec![("payload-mass", vec![0.6])], 47);
     let found = |library: &[&str]| {

@@ -34,7 +34,7 @@ pub struct LoopAnalysis {
     /// Frequencies of the natural modes at the first position, Hz, the rigid motion left out, up to
     /// half the sampling rate.
     pub modes_hz: Vec<f64>,
-    /// Greatest sensitivities of all corners.
+    /// Maximum sensitivities of all corners.
     pub worst: WorstMargins,
     /// All corners; the axis as its file says first, sliding, then stuck.
     pub corners: Vec<CornerMargins>,
@@ -48,7 +48,7 @@ pub struct LoopAnalysis {
 /// stable.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct WorstMargins {
-    /// Greatest sensitivity at either cut.
+    /// Maximum sensitivity at either cut.
     pub sensitivity: Option<f64>,
     /// Its corner.
     pub sensitivity_corner: usize,
@@ -71,14 +71,14 @@ pub struct LoopCurves {
     pub open_command: Vec<[f64; 2]>,
     /// Open position loop, its speed loop closed.
     pub open_position: Vec<[f64; 2]>,
-    /// Motor's speed per set point of the speed controller.
+    /// Motor's speed per set point of the speed controller; empty of a PID controller, which has none.
     pub speed_followed: Vec<[f64; 2]>,
     /// The load's motion per force on it, m/N or rad/(N·m).
     pub compliance: Vec<[f64; 2]>,
 }
 
 impl LoopCurves {
-    fn of(corner: &CornerLoop, gains: &LoopGains) -> Self {
+    fn of(corner: &CornerLoop, gains: &LoopGains, is_pid: bool) -> Self {
         let each = |of: &dyn Fn(&LoopAt) -> Number| {
             let all = corner.points.iter().map(of);
             all.map(|value| [value.re, value.im]).collect()
@@ -88,7 +88,10 @@ impl LoopCurves {
             frequency_hz: corner.points.iter().map(|p| hertz(p.frequency)).collect(),
             open_command: each(&|p| p.cut(gains, false)[0]),
             open_position: each(&|p| p.cut(gains, false)[1]),
-            speed_followed: each(&|p| p.speed_followed(gains)),
+            speed_followed: match is_pid {
+                true => Vec::new(),
+                false => each(&|p| p.speed_followed(gains)),
+            },
             compliance: each(&|p| p.compliance(gains)),
         }
     }
@@ -130,7 +133,7 @@ impl LoopAnalysis {
             worst: worst(&corners),
             curves: loops.corners[..2.min(loops.corners.len())]
                 .iter()
-                .map(|corner| LoopCurves::of(corner, &gains))
+                .map(|corner| LoopCurves::of(corner, &gains, loops.model.is_pid))
                 .collect(),
             corners,
             notes: notes(axis, &loops),
@@ -169,6 +172,12 @@ fn worst(corners: &[CornerMargins]) -> WorstMargins {
 /// What the linear loop does not see.
 fn notes(axis: &Axis, loops: &AxisLoops) -> Vec<String> {
     let mut all = Vec::new();
+    if loops.model.is_pid {
+        all.push(
+            "the control is a PID controller of the position: there is one loop, and both cuts are that loop"
+                .to_owned(),
+        );
+    }
     if axis.mechanism.backlash() > 0.0 {
         all.push(
             "the free travel of the transmission (backlash) is left out: the loop is that of closed flanks"

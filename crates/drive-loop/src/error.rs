@@ -35,9 +35,9 @@ pub enum LoopError {
         /// Greatest.
         most: f64,
     },
-    /// The control has no loops that could be cut.
+    /// The control has no loop that could be cut.
     #[error(
-        "the axis has no position controller over a speed controller ([control] is {kind}), so it has no two loops to cut; valid: kind = \"p-pi\" or \"p-p\""
+        "the axis has no loop whose margins are known ([control] is {kind}); valid: kind = \"p-pi\" or \"p-p\", a position controller over a speed controller, or \"pid\" with proportional and derivative above 0"
     )]
     Control {
         /// Its kind.

@@ -176,7 +176,7 @@ impl AxisLoops {
         now <= most && late <= most_late && self.corners.par_iter().all(is_stable)
     }
 
-    /// Greatest sensitivity of all corners at either cut, and with one more cycle of delay;
+    /// Maximum sensitivity of all corners at either cut, and with one more cycle of delay;
     /// infinite where one is unstable.
     fn peaks(&self, gains: &LoopGains) -> [f64; 2] {
         let all: Vec<[f64; 2]> = self

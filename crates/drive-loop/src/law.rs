@@ -8,6 +8,9 @@
 //! L_p = P H C G_p/(1 + C S G_ω)                       of the speed set point in cycles
 //! ```
 //!
+//! A PID controller of the position is one loop, L = k_p S G_ω + (k_p + k_i T/(1 − z⁻¹)) P G_p with the speed
+//! as the difference of the position over a cycle; both cuts are that.
+//!
 //! G_ω and G_p are the responses of the speed and of the position that the controllers go by to the
 //! command. What a loop that is slower than the others folds down from above half its own rate is
 //! left out: drives attenuate that by the inertia of the machine.
@@ -48,6 +51,8 @@ pub(crate) struct LoopAt {
     pub force: [Number; 3],
     /// What the speed controller sees per step of the angle, S (1 − z⁻ᴹ)/(M T).
     pub per_angle: Number,
+    /// Whether the integral sees the position alone.
+    pub is_pid: bool,
 }
 
 const ONE: Number = Number::new(1.0, 0.0);
@@ -112,6 +117,7 @@ impl LoopAt {
             motor_speed: passed * plant.command[1],
             force: [force_speed, force_position, plant.force[2]],
             per_angle: speed_filter * differences,
+            is_pid: model.is_pid,
         }
     }
 
@@ -122,24 +128,35 @@ impl LoopAt {
 
     /// The loop cut at the command, and the one cut at the position.
     pub fn cut(&self, gains: &LoopGains, is_late: bool) -> [Number; 2] {
-        let mut c = self.controller(gains);
-        if is_late {
-            c *= self.late;
+        let late = if is_late { self.late } else { ONE };
+        let [inner, outer] = self.answers(gains, self.speed, self.position);
+        let [inner, outer] = [late * inner, late * outer];
+        match self.is_pid {
+            true => [inner + outer; 2],
+            false => [inner + outer, outer / (inner + 1.0)],
         }
-        let inner = c * self.speed;
-        let outer = c * self.position * gains.position;
-        [inner + outer, outer / (inner + 1.0)]
+    }
+
+    /// Command of the controllers to a speed and to a position that they see.
+    fn answers(&self, gains: &LoopGains, speed: Number, position: Number) -> [Number; 2] {
+        let c = self.controller(gains);
+        let inner = match self.is_pid {
+            true => speed * gains.speed,
+            false => c * speed,
+        };
+        [inner, c * position * gains.position]
     }
 
     /// The load's motion per force on it.
     pub fn compliance(&self, gains: &LoopGains) -> Number {
-        let c = self.controller(gains);
-        let l = c * (self.speed + self.position * gains.position);
+        let [inner, outer] = self.answers(gains, self.speed, self.position);
         let [speed, position, load] = self.force;
-        load - self.load * c * (speed + position * gains.position) / (l + 1.0)
+        let [by_speed, by_position] = self.answers(gains, speed, position);
+        load - self.load * (by_speed + by_position) / (inner + outer + 1.0)
     }
 
-    /// The motor's speed per set point of the speed controller, its position loop open.
+    /// The motor's speed per set point of the speed controller, its position loop open; of a PID
+    /// controller it means nothing.
     pub fn speed_followed(&self, gains: &LoopGains) -> Number {
         let c = self.controller(gains);
         c * self.motor_speed / (c * self.speed + 1.0)
@@ -147,9 +164,9 @@ impl LoopAt {
 
     /// Command per step of the angle that the speed is derived from, the loop closed.
     pub fn ripple(&self, gains: &LoopGains) -> Number {
-        let c = self.controller(gains);
-        let l = c * (self.speed + self.position * gains.position);
-        c * self.passed * self.per_angle / (l + 1.0)
+        let [inner, outer] = self.answers(gains, self.speed, self.position);
+        let [answer, _] = self.answers(gains, self.per_angle, self.per_angle);
+        answer * self.passed / (inner + outer + 1.0)
     }
 }
 

@@ -18,7 +18,7 @@
 //! The equations and where they are from are in docs/theory/drive-loop.md.
 //!
 //! # Example
-//! The paper's axis, as printed: its greatest sensitivity at the position of its trajectories.
+//! The paper's axis, as printed: its maximum sensitivity at the position of its trajectories.
 //!
 //! ```
 //! use axis_sim::Axis;

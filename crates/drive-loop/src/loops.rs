@@ -13,7 +13,7 @@ use crate::plant::{Corner, LoopModel, Number, PlantAt, PlantResponse};
 const LOWEST: f64 = 1e-5;
 /// Frequencies of the even grid.
 const EVEN: usize = 200;
-/// Greatest change of phase (rad) and of the logarithm of size from one frequency to the next; a gap
+/// Greatest change of phase (rad) and of the logarithm of the magnitude from one frequency to the next; a gap
 /// with more is halved, up to so many times.
 const PHASE: f64 = 0.15;
 const SIZE: f64 = 0.3;
@@ -33,7 +33,7 @@ pub(crate) struct CornerLoop {
     pub integrators: u32,
 }
 
-/// Greatest sensitivities of one corner, infinite where the loop is not stable.
+/// Maximum sensitivities of one corner, infinite where the loop is not stable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sensitivities {
     /// At the command and at the position.

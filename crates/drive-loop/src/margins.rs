@@ -20,7 +20,7 @@ const SECTIONS: u32 = 40;
 /// Margins of a loop that is cut at one place.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct CutMargins {
-    /// Greatest sensitivity, max 1/|1 + L|; none where the loop is not stable.
+    /// Maximum sensitivity, max 1/|1 + L|; none where the loop is not stable.
     pub sensitivity: Option<f64>,
     /// Frequency of that, Hz.
     pub sensitivity_at_hz: f64,
@@ -53,10 +53,11 @@ pub struct CornerMargins {
     pub radius: f64,
     /// The whole loop, cut at the command.
     pub command: CutMargins,
-    /// The position loop, cut where the position comes in, the speed loop closed.
+    /// The position loop, cut where the position comes in, the speed loop closed; of a PID controller,
+    /// which has one loop, the same as `command`.
     pub position: CutMargins,
     /// Frequency from which on the speed follows its set point by less than −3 dB, Hz; none where it
-    /// does so up to half the sampling rate.
+    /// does so up to half the sampling rate, and of a PID controller.
     pub speed_bandwidth_hz: Option<f64>,
     /// The same of the position, without feed-forward.
     pub position_bandwidth_hz: Option<f64>,
@@ -102,7 +103,10 @@ impl CornerLoop {
             radius,
             command: cut(0),
             position: cut(1),
-            speed_bandwidth_hz: self.bandwidth(model, |p| p.speed_followed(gains)),
+            speed_bandwidth_hz: match model.is_pid {
+                true => None,
+                false => self.bandwidth(model, |p| p.speed_followed(gains)),
+            },
             position_bandwidth_hz: self.bandwidth(model, |p| {
                 let l = p.cut(gains, false)[1];
                 l / (l + 1.0)
@@ -163,7 +167,7 @@ impl CornerLoop {
         found
     }
 
-    /// Greatest sensitivity at either cut, and with one more cycle of delay; infinite where the loop
+    /// Maximum sensitivity at either cut, and with one more cycle of delay; infinite where the loop
     /// is unstable.
     pub(crate) fn peaks(&self, model: &LoopModel, gains: &LoopGains) -> [f64; 2] {
         let on_grid = self.sensitivities(gains);

@@ -35,6 +35,9 @@ pub(crate) struct LoopModel {
     pub model: DriveModel,
     pub sensing: Sensing,
     integrates: bool,
+    /// Whether it is a PID controller of the position: its integral sees the position error alone, and
+    /// there is one loop.
+    pub is_pid: bool,
 }
 
 /// How the drive gets to see motor and load.
@@ -91,9 +94,27 @@ impl Sensing {
     }
 }
 
+impl Sensing {
+    /// Of a controller that derives the speed from the position that it controls.
+    fn derive_speed_from_position(&mut self, axis: &Axis) {
+        self.by_differences = true;
+        self.motor_from_load = !self.load_from_motor;
+        if let LoadSensor::Fitted(sensor) = &axis.sensors.load {
+            self.step = sensor.resolution() / axis.travel_per_radian();
+        }
+    }
+}
+
 impl LoopModel {
     pub fn new(axis: &Axis) -> Result<Self, LoopError> {
-        let model = axis.drive_model()?;
+        let mut model = axis.drive_model()?;
+        let mut sensing = Sensing::of(axis);
+        let pid = axis.control.pid(model.travel, axis.period);
+        let is_pid = pid.is_some();
+        if let Some(pid) = pid {
+            model.cascade = pid;
+            sensing.derive_speed_from_position(axis);
+        }
         if model.cascade.position <= 0.0 || model.cascade.speed <= 0.0 {
             return Err(LoopError::Control {
                 kind: axis.control.kind().name,
@@ -102,7 +123,8 @@ impl LoopModel {
         Ok(Self {
             integrates: model.cascade.speed_integral > 0.0,
             model,
-            sensing: Sensing::of(axis),
+            sensing,
+            is_pid,
         })
     }
 

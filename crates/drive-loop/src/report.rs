@@ -122,6 +122,8 @@ fn limiting(loops: &AxisLoops, gains: &LoopGains, limits: &Limits) -> Vec<Limiti
         ),
     ];
     let mut all = Vec::new();
+    let places = if loops.model.is_pid { 1 } else { 2 };
+    let kinds = kinds.into_iter().filter(|(_, place, ..)| *place < places);
     for (what, place, of, limit) in kinds {
         let worst = margins
             .iter()

@@ -37,7 +37,7 @@ const QUIET: f64 = 1e-3;
 /// What is asked of gains.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TuneSettings {
-    /// Greatest sensitivity at either cut, in all corners.
+    /// Maximum sensitivity at either cut, in all corners.
     pub sensitivity: f64,
     /// The same with one more cycle of delay.
     pub sensitivity_late: f64,
@@ -115,7 +115,7 @@ pub struct TunedGains {
 /// How good a loop holds the load, and its margins over the set.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct LoopFigures {
-    /// Greatest sensitivity over the set at either cut; none where a corner is unstable.
+    /// Maximum sensitivity over the set at either cut; none where a corner is unstable.
     pub sensitivity: Option<f64>,
     /// The same with one more cycle of delay.
     pub sensitivity_late: Option<f64>,

@@ -183,7 +183,8 @@ impl Cycle<'_> {
             let seen = filtered(passage.speed.as_ref(), p.filters[0], &mut x, speed);
             let error = x[p.set_point] - seen;
             let every = f64::from(passage.speed_every.max(1));
-            x[p.integral] += self.gains.integral * every * model.period() * error;
+            let summed = if model.is_pid { x[p.set_point] } else { error };
+            x[p.integral] += self.gains.integral * every * model.period() * summed;
             let mut command = self.gains.speed * error + x[p.integral];
             for (filter, at) in passage.command.iter().zip(&p.filters[1..3]) {
                 command = filtered(filter.as_ref(), *at, &mut x, command);

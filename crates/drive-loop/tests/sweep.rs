@@ -186,7 +186,28 @@ fn greatest(axis: &Axis, speed: f64, place: Place, size: f64, every: usize) -> f
     heights.into_iter().fold(0.0, f64::max)
 }
 
-/// 0.02 in the greatest sensitivity: asked of the analysis.
+/// A PID controller of the position is one loop.
+#[test]
+fn the_sensitivity_of_a_pid_controller_is_that_of_a_sweep() {
+    let mut axis = example("linear-stage");
+    let own = |axis: &Axis| {
+        let found = LoopAnalysis::of(axis, &LoopSet::nominal()).unwrap();
+        assert_eq!(found.own().command, found.own().position);
+        found.own().command
+    };
+    // The crossover that the file states of its loop.
+    let file = own(&axis);
+    assert!((file.crossover_hz.unwrap() - 48.0).abs() < 0.5, "{file:?}");
+    // With less derivative it has a peak to sweep.
+    axis.control
+        .change(|values| values.set("derivative", 1100.0))
+        .unwrap();
+    let said = own(&axis).sensitivity.unwrap();
+    let swept = greatest(&axis, 0.03, Place::Command, 0.2, 1);
+    assert!((swept - said).abs() < 0.02, "{swept} {said}");
+}
+
+/// 0.02 in the maximum sensitivity: asked of the analysis.
 #[test]
 fn sensitivities_are_those_of_a_sweep_of_the_simulated_axis() {
     let cases = [

@@ -74,6 +74,40 @@ fn a_narrower_limit_is_kept() {
     assert!(narrow.tuned_gains.speed_proportional < wide.tuned_gains.speed_proportional);
 }
 
+/// A PID controller is tuned to the same limits, and its keys are set.
+#[test]
+fn a_pid_controller_is_tuned() {
+    let axis = example("linear-stage");
+    let settings = TuneSettings::default();
+    let found = Tuning::of(&axis, &settings).unwrap();
+    let after = LoopAnalysis::of(&found.axis, &settings.set).unwrap();
+    let [now, late] = [after.worst.sensitivity, after.worst.sensitivity_late].map(Option::unwrap);
+    assert!(now <= 1.6 && late <= 2.0, "{now} {late}");
+    assert!(now > 1.5 || late > 1.9, "room is left: {now} {late}");
+    assert!(found.report.proven_stable);
+    for check in &found.report.moves {
+        let [before, after] = [check.file, check.tuned].map(|m| m.peak_error.unwrap());
+        assert!(after < before, "{after:e} {before:e}");
+    }
+    let keys: Vec<String> = found.keys(&axis).into_iter().map(|key| key.key).collect();
+    assert_eq!(
+        keys,
+        [
+            "proportional_n_per_m",
+            "integral_n_per_m_s",
+            "derivative_n_s_per_m"
+        ]
+    );
+    // Slow forces are held by the integral, of which nothing else is read here: y/F = 2πf/K_I.
+    let curves = &after.curves[0];
+    let at = curves.frequency_hz.iter().position(|f| *f > 0.2).unwrap();
+    let [re, im] = curves.compliance[at];
+    let integral = found.axis.control.values().number("integral").unwrap();
+    let expected = std::f64::consts::TAU * curves.frequency_hz[at] / integral;
+    assert!((re.hypot(im) / expected - 1.0).abs() < 0.01);
+    assert!(curves.speed_followed.is_empty());
+}
+
 /// Gains that are unstable at the beginning are found stable ones.
 #[test]
 fn an_unstable_start_is_no_obstacle() {

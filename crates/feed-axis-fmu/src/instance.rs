@@ -2,14 +2,12 @@
 
 use std::path::Path;
 
-use axis_fmu::{AXIS_FILE, LIBRARY_MARK, Unit, UnitError, UnitKind};
+use axis_fmu::{AXIS_FILE, CORRECTION_FILE, LIBRARY_MARK, Unit, UnitError, UnitKind};
 use safer_ffi::prelude::*;
 
 use crate::log::Log;
 
-/// What `fmi3Instance` points to, and `fmi2Component` holds.
-#[derive_ReprC]
-#[repr(opaque)]
+/// What `fmi3Instance` and `fmi2Component` hold.
 pub struct Instance {
     pub(crate) unit: Unit,
     pub(crate) log: Log,
@@ -40,38 +38,23 @@ impl Instance {
     }
 }
 
-/// Bytes of a state that are written, and that are read.
-pub type BytesOut<'a> = Option<c_slice::Mut<'a, u8>>;
-pub type BytesIn<'a> = Option<c_slice::Ref<'a, u8>>;
-
 impl State {
     /// Tells how many bytes it takes.
     pub fn size(state: Option<&Self>, size: Option<&mut usize>) -> Result<(), UnitError> {
-        let bytes = state.ok_or(NO_STATE)?.unit.to_bytes()?;
-        *size.ok_or(UnitError::Null("size"))? = bytes.len();
+        *size.ok_or(UnitError::Null("size"))? = Self::bytes(state)?.len();
         Ok(())
     }
 
-    /// Writes them.
-    pub fn write(state: Option<&Self>, to: BytesOut<'_>) -> Result<(), UnitError> {
-        let bytes = state.ok_or(NO_STATE)?.unit.to_bytes()?;
-        let mut to = to.ok_or(UnitError::Null("bytes"))?;
-        let (size, least) = (to.len(), bytes.len());
-        let Some(to) = to.get_mut(..least) else {
-            return Err(UnitError::State(format!(
-                "it takes {least} bytes, and there is room for {size}; valid: as many or more"
-            )));
-        };
-        to.copy_from_slice(&bytes);
-        Ok(())
+    /// Its bytes.
+    pub fn bytes(state: Option<&Self>) -> Result<Vec<u8>, UnitError> {
+        state.ok_or(NO_STATE)?.unit.to_bytes()
     }
 }
 
 impl Instance {
     /// Makes a state of bytes, in the one that is there, or a new one.
-    pub fn read(&self, from: BytesIn<'_>, state: StateAt<'_>) -> Result<(), UnitError> {
-        let from = from.ok_or(UnitError::Null("bytes"))?;
-        let unit = self.unit.from_bytes(from.as_slice())?;
+    pub fn read(&self, from: &[u8], state: StateAt<'_>) -> Result<(), UnitError> {
+        let unit = self.unit.from_bytes(from)?;
         *state.ok_or(NO_STATE)? = Some(Box::new(State { unit }).into());
         Ok(())
     }
@@ -81,11 +64,20 @@ const NO_STATE: UnitError = UnitError::Null("state");
 
 /// The unit of the resources, if it is the one that the environment means by `token`.
 pub fn unit(token: &str, resources: &str) -> Result<Unit, String> {
-    let file = Path::new(resources).join(AXIS_FILE);
-    let name = file.display().to_string();
-    let text = std::fs::read_to_string(&file).map_err(|error| format!("{name}: {error}"))?;
-    let unit = Unit::of(UnitKind::of_token(token), &name, &text)
-        .map_err(|error: UnitError| error.to_string())?;
+    let read = |file: &str| {
+        let file = Path::new(resources).join(file);
+        let name = file.display().to_string();
+        match std::fs::read_to_string(&file) {
+            Ok(text) => Ok((name, text)),
+            Err(error) => Err(format!("{name}: {error}")),
+        }
+    };
+    let (name, text) = read(AXIS_FILE)?;
+    let unit = match UnitKind::of_token(token) {
+        UnitKind::Compensated => Unit::compensated(&name, &text, &read(CORRECTION_FILE)?.1),
+        kind => Unit::of(kind, &name, &text),
+    };
+    let unit = unit.map_err(|error: UnitError| error.to_string())?;
     if token != unit.token() {
         return Err(format!(
             "the instantiation token (in FMI 2.0 the GUID) is \"{token}\"; valid: \"{}\", of {name} and the {LIBRARY_MARK}",

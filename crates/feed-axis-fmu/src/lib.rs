@@ -9,17 +9,20 @@
 //!
 //! # Pointers
 //! The functions are made by `safer-ffi`'s `#[ffi_export]`: pointers come as `Option` of
-//! references, boxes and slices, so no `unsafe` is written here. FMI 3.0 passes arrays as two
-//! arguments, address and length; `c_slice` is one structure of the two. Under the System V ABI of
-//! x86-64 (Section 3.2.3) and the procedure call standard of AArch64 (Section 6.8) a structure of
-//! two registers passes exactly as two arguments do while registers last, which is so in all
-//! functions here that take one. On other targets that does not hold, and the library is empty.
-//! FMI 2.0 passes one length for two arrays: `fmi2/access.rs`.
-#![cfg(all(unix, any(target_arch = "x86_64", target_arch = "aarch64")))]
+//! references and boxes, so no `unsafe` is written here. Arrays are read and written element by
+//! element (`access.rs`), which holds under the calling convention of any target.
+#![cfg(all(
+    any(unix, windows),
+    any(target_arch = "x86_64", target_arch = "aarch64")
+))]
 
+mod access;
 mod call;
+mod component;
 mod fmi2;
 mod fmi3;
 mod instance;
 mod log;
 mod resource_path;
+mod state_bytes;
+mod values;

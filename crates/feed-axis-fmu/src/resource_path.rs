@@ -12,7 +12,7 @@ pub fn resource_path(uri: &str) -> Result<String, String> {
             "the location of the resources is \"{uri}\": {why}; valid: file:///folder/resources"
         ))
     };
-    let Some((scheme, rest)) = uri.split_once(':') else {
+    let Some((scheme, rest)) = uri.split_once(':').filter(|(scheme, _)| !is_drive(scheme)) else {
         return Ok(uri.to_owned());
     };
     if !scheme.eq_ignore_ascii_case("file") {
@@ -29,8 +29,23 @@ pub fn resource_path(uri: &str) -> Result<String, String> {
         None => rest,
     };
     match percent_decoded(path) {
-        Some(path) => Ok(path),
+        Some(path) => Ok(without_root(path)),
         None => refused("a % is not followed by the two hexadecimal digits of a UTF-8 text"),
+    }
+}
+
+/// Whether it is the letter of a drive of Windows, of which no scheme of one letter is registered.
+fn is_drive(scheme: &str) -> bool {
+    scheme.len() == 1 && scheme.chars().all(|c| c.is_ascii_alphabetic())
+}
+
+/// `/C:/folder`, as RFC 8089, Appendix E.2, has a path of Windows, as `C:/folder`.
+fn without_root(path: String) -> String {
+    let rest = path.strip_prefix('/');
+    let drive = rest.and_then(|rest| Some((rest, rest.split_once(':')?.0)));
+    match drive {
+        Some((rest, drive)) if is_drive(drive) => rest.to_owned(),
+        _ => path,
     }
 }
 
@@ -63,6 +78,9 @@ mod tests {
             ("FILE://localhost/tmp/resources/", "/tmp/resources/"),
             ("file:///tmp/%C3%BC/%25", "/tmp/ü/%"),
             ("/tmp/plain", "/tmp/plain"),
+            ("file:///C:/units%20a/resources", "C:/units a/resources"),
+            (r"C:\units\resources", r"C:\units\resources"),
+            ("file:///c/units", "/c/units"),
             ("", ""),
         ] {
             assert_eq!(resource_path(uri).as_deref(), Ok(path));

@@ -1,5 +1,8 @@
 //! The library as cargo builds it.
-#![cfg(all(unix, any(target_arch = "x86_64", target_arch = "aarch64")))]
+#![cfg(all(
+    any(unix, windows),
+    any(target_arch = "x86_64", target_arch = "aarch64")
+))]
 
 use std::path::Path;
 
@@ -13,7 +16,8 @@ fn a_package_takes_the_library() {
     let text = std::fs::read_to_string(axis).unwrap();
     let unit = axis_fmu::Unit::new("belt.toml", &text).unwrap();
     for version in [axis_fmu::FmiVersion::V2, axis_fmu::FmiVersion::V3] {
-        let package = axis_fmu::package(&unit, &library, version).unwrap();
+        let library = axis_fmu::UnitLibrary::of(&library).unwrap();
+        let package = axis_fmu::package(&unit, &[library], version).unwrap();
         assert!(package.starts_with(b"PK"));
     }
 }

@@ -201,7 +201,9 @@ whole! {
     count: usize, up to 100_000_000;
     elements: usize, up to 100_000;
     epochs: usize, up to 1_000_000_000;
+    laps: u32, up to 100;
     n: usize, up to 100_000_000;
+    poles: usize, up to 16;
     seed: u64, up to u64::MAX;
     threads: usize, up to 1024;
 }

@@ -1,6 +1,6 @@
 //! Axes: from a file, a text or a dict.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use axis_sim::{Axis, channels};
@@ -24,6 +24,16 @@ pub(crate) struct PyAxis {
 }
 
 impl PyAxis {
+    /// Of an axis file.
+    pub(crate) fn read(py: Python<'_>, path: &Path) -> PyResult<Self> {
+        let text = text_of::<AxisError>(py, path)?;
+        let axis = Axis::read_changed(path, &text).map_err(raise::<AxisError>)?;
+        Ok(Self {
+            axis: Arc::new(axis),
+            text,
+        })
+    }
+
     pub(crate) fn parsed(name: &str, text: String) -> PyResult<Self> {
         let axis = Axis::parse(name, &text).map_err(raise::<AxisError>)?;
         Ok(Self {
@@ -55,12 +65,7 @@ impl PyAxis {
     /// Reads an axis file.
     #[classmethod]
     fn load(kind: &Bound<'_, PyType>, path: PathBuf) -> PyResult<Self> {
-        let text = text_of::<AxisError>(kind.py(), &path)?;
-        let axis = Axis::read_changed(&path, &text).map_err(raise::<AxisError>)?;
-        Ok(Self {
-            axis: Arc::new(axis),
-            text,
-        })
+        Self::read(kind.py(), &path)
     }
 
     /// Reads the text of an axis file; `name` stands for it in messages.

@@ -3,11 +3,10 @@
 use axis_sim::rating::AxisDuty;
 use feed_axis::commands::check_words::CheckedRow;
 use pyo3::prelude::*;
-use pyo3::types::{PyList, PyTuple};
 
 use crate::axis::PyAxis;
 use crate::errors::{AxisError, LogError, MotionError, SimulationError, raise};
-use crate::log::{Renamed, whole_log_of};
+use crate::log::{Renamed, each_log, whole_log_of};
 use crate::long::long;
 use crate::loops::plain;
 use crate::motion::AnyMotion;
@@ -60,12 +59,7 @@ impl PyAxis {
 impl PyAxis {
     fn duty_of_logs(&self, logs: &Bound<'_, PyAny>) -> PyResult<AxisDuty> {
         let mut duty = AxisDuty::of(&self.axis).map_err(raise::<AxisError>)?;
-        let several = logs.is_instance_of::<PyList>() || logs.is_instance_of::<PyTuple>();
-        let all: Vec<Bound<'_, PyAny>> = match several {
-            true => logs.try_iter()?.collect::<PyResult<_>>()?,
-            false => vec![logs.clone()],
-        };
-        for (i, log) in all.iter().enumerate() {
+        for (i, log) in each_log(logs)?.iter().enumerate() {
             let name = format!("logs[{i}]");
             let needed = [self.axis.position_channel()];
             let renamed = Renamed::default();

@@ -24,6 +24,12 @@ create_exception!(
 );
 create_exception!(
     feed_axis,
+    MachineError,
+    FeedAxisError,
+    "A machine file, or axes in its place, that make no machine, or none for a path."
+);
+create_exception!(
+    feed_axis,
     MotionError,
     FeedAxisError,
     "A motion that cannot be planned, or not on this axis."

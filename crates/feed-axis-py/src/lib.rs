@@ -7,9 +7,10 @@
 //! every equation, and every word of an error, is that of the crate below it.
 //!
 //! # Rooms
-//! - `begin`: axes to begin with. `loops`: margins and tuning of an axis' loops. `linear`: state space and frequency responses. `controller`: an unknown one, from logs.
+//! - `begin`: axes to begin with. `loops`: margins and tuning of an axis' loops. `frf`: frequency responses from logs. `linear`: state space and frequency responses. `controller`: an unknown one, from logs.
 //! - `axis`, `motion`, `simulate`, `run`: an axis from a file or a dict, along a motion, to
 //!   arrays.
+//! - `machine`, `toolpath`, `contour`, `circles`: several axes on one path, and what circular tests show.
 //! - `check`: an axis against the data sheets of its parts.
 //! - `log`, `discover`, `discovery`: what a model lacks, from files, frames or arrays.
 //! - `compensation`, `sample`, `identify`, `learn`, `export`: corrections, cycle by cycle, on whole moves, and for controllers.
@@ -29,7 +30,9 @@ mod axis;
 mod beam;
 mod begin;
 mod check;
+mod circles;
 mod compensation;
+mod contour;
 mod controller;
 mod design;
 mod dict;
@@ -37,6 +40,7 @@ mod discover;
 mod discovery;
 mod errors;
 mod export;
+mod frf;
 mod heat;
 mod html;
 mod identify;
@@ -46,12 +50,14 @@ mod log;
 mod long;
 mod loops;
 mod lugre_law;
+mod machine;
 mod motion;
 mod network;
 mod one_cycle;
 mod run;
 mod sample;
 mod simulate;
+mod toolpath;
 mod value;
 
 use pyo3::prelude::*;
@@ -66,7 +72,11 @@ mod _feed_axis {
     #[pymodule_export]
     use crate::begin::{examples, new};
     #[pymodule_export]
+    use crate::circles::{PyCirclesFound, fit_circles};
+    #[pymodule_export]
     use crate::compensation::PyCompensator;
+    #[pymodule_export]
+    use crate::contour::PyContour;
     #[pymodule_export]
     use crate::controller::identify_control;
     #[pymodule_export]
@@ -77,8 +87,8 @@ mod _feed_axis {
     use crate::discovery::{Discovery, Effect, Parameter};
     #[pymodule_export]
     use crate::errors::{
-        AxisError, FeedAxisError, LogError, LoopError, MotionError, NetworkError, ParameterError,
-        SearchError, SimulationError, StrategyError,
+        AxisError, FeedAxisError, LogError, LoopError, MachineError, MotionError, NetworkError,
+        ParameterError, SearchError, SimulationError, StrategyError,
     };
     #[pymodule_export]
     use crate::identify::TransferFunctions;
@@ -86,6 +96,8 @@ mod _feed_axis {
     use crate::learn::{MoveCorrection, identify, learn};
     #[pymodule_export]
     use crate::lugre_law::PyLuGre;
+    #[pymodule_export]
+    use crate::machine::PyMachine;
     #[pymodule_export]
     use crate::motion::{Move, Program, PySCurve};
     #[pymodule_export]
@@ -96,6 +108,8 @@ mod _feed_axis {
     use crate::run::Run;
     #[pymodule_export]
     use crate::sample::{PyCorrection, PySample};
+    #[pymodule_export]
+    use crate::toolpath::PyToolpath;
 
     use pyo3::prelude::*;
 

@@ -9,7 +9,7 @@ use axis_sim::{Axis, CHANNELS, LogChannel};
 use discrepancy::logs::{NamedLog, admit, exact_channels, most_samples, needed_channels};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::PyMapping;
+use pyo3::types::{PyList, PyMapping, PyTuple};
 
 use crate::arrays::{key, samples};
 use crate::errors::{LogError, raise, readable};
@@ -46,6 +46,19 @@ pub(crate) fn whole_log_of(
         rate_hz: None,
         most_samples: most_samples(axis),
     };
+    whole_log_by(given, name, axis, needed, renamed, options, notes)
+}
+
+/// The same, made ready as `options` say.
+pub(crate) fn whole_log_by(
+    given: &Bound<'_, PyAny>,
+    name: &str,
+    axis: &Axis,
+    needed: &[&str],
+    renamed: &Renamed,
+    options: Options<'_>,
+    notes: &mut Vec<String>,
+) -> PyResult<(String, Log)> {
     let (name, prepared) = match given.extract::<PathBuf>() {
         Ok(path) => {
             let files = files(&path);
@@ -68,6 +81,14 @@ pub(crate) fn whole_log_of(
     let prepared = prepared.map_err(raise::<LogError>)?;
     notes.extend(prepared.done.iter().map(ToString::to_string));
     Ok((name, prepared.log))
+}
+
+/// A log, or each of a list or tuple of them.
+pub(crate) fn each_log<'py>(logs: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+    match logs.is_instance_of::<PyList>() || logs.is_instance_of::<PyTuple>() {
+        true => logs.try_iter()?.collect(),
+        false => Ok(vec![logs.clone()]),
+    }
 }
 
 /// Columns of frames and dicts that have other names than their channels: column, channel, and

@@ -1,6 +1,6 @@
 //! Margins of an axis' loops, and gains that have them.
 
-use drive_loop::{LoopAnalysis, LoopSet, TuneSettings, TunedKey, Tuning};
+use drive_loop::{LoopAnalysis, LoopSet, MeasureSettings, TuneSettings, TunedKey, Tuning};
 use pyo3::prelude::*;
 use pyo3::types::PyModule;
 use serde::Serialize;
@@ -9,6 +9,7 @@ use toml::{Table, Value};
 use crate::arrays::line;
 use crate::axis::PyAxis;
 use crate::errors::{AxisError, LoopError, raise};
+use crate::log::Renamed;
 use crate::long::long;
 
 /// The cases over which margins are computed; the defaults are those of the command.
@@ -61,7 +62,7 @@ impl PyAxis {
 
     /// Gains of the loops within limits of the sensitivity: the axis that has them, and what was
     /// found.
-    #[pyo3(signature = (*, sensitivity = 1.6, sensitivity_late = 2.0, ripple = 0.02, positions = None, masses = None, frictions = None, acceleration = true, notch = true, current = false))]
+    #[pyo3(signature = (*, sensitivity = 1.6, sensitivity_late = 2.0, ripple = 0.02, positions = None, masses = None, frictions = None, acceleration = true, notch = true, current = false, frf = None))]
     #[allow(clippy::too_many_arguments, reason = "keywords of a Python function")]
     fn tune<'py>(
         &self,
@@ -75,12 +76,20 @@ impl PyAxis {
         acceleration: bool,
         notch: bool,
         current: bool,
+        frf: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<(Self, Bound<'py, PyAny>)> {
+        let mut set = set_of(positions, masses, frictions, 0.0)?;
+        if let Some(logs) = frf {
+            let settings = MeasureSettings::default();
+            let all = self.measured(py, "frf", logs, &Renamed::default(), settings)?;
+            let measured = set.with_measured(&self.axis, &all);
+            set = measured.map_err(raise::<LoopError>)?;
+        }
         let settings = TuneSettings {
             sensitivity,
             sensitivity_late,
             ripple,
-            set: set_of(positions, masses, frictions, 0.0)?,
+            set,
             acceleration,
             notch,
             current,

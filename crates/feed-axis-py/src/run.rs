@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use axis_log::TIME_CHANNEL;
 use axis_report::{Cell, Figure, Page, Section, Series, Table, engineering};
-use axis_sim::{Axis, Cycle, LogChannel, channels};
+use axis_sim::{Axis, Cycle, LogChannel, channels, excitation_channel};
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -23,9 +23,10 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
-    /// For a run of so many cycles.
-    pub(crate) fn of(axis: &Axis, cycles: usize) -> Self {
-        let channels = channels(axis);
+    /// For a run of so many cycles, with what an excitation adds where there is one.
+    pub(crate) fn of(axis: &Axis, cycles: usize, is_excited: bool) -> Self {
+        let mut channels = channels(axis);
+        channels.extend(is_excited.then(|| excitation_channel(axis)));
         Self {
             names: (channels.iter())
                 .map(|c| c.of_freedom(axis.freedom()))

@@ -73,3 +73,54 @@ def test_loops_that_cannot_be_asked_for_are_refused(axis: fa.Axis) -> None:
         axis.analyse(masses="a")
     with pytest.raises(fa.LoopError, match="sensitivity is 0.5; valid: from 1.1 to 10"):
         axis.tune(sensitivity=0.5)
+
+
+def excited_slide(axis: fa.Axis, amplitude: float) -> fa.Run:
+    """A slide of the rack at 50 mm/s; random signs, held over two cycles, on its command while the speed is constant."""
+    move = fa.SCurve(0.5, 0.753, speed_m_s=0.05, acceleration_m_s2=1.0, jerk_m_s3=20.0)
+    cycles = round(5.0 / axis.period_s)
+    signs = np.repeat(np.random.default_rng(7).choice([-1.0, 1.0], cycles // 2 + 1), 2)[:cycles]
+    signs[: round(0.2 / axis.period_s)] = 0.0
+    return axis.simulate(move, noise=1.0, excitation=amplitude * signs)
+
+
+def test_a_delay_that_the_file_lacks_is_measured_and_tuned_with(root: Path) -> None:
+    axis = fa.Axis.load(root / "data/axes/rack.toml")
+    values = axis.to_dict()
+    values["actuator"]["delay_us"] += 300
+    machine = fa.Axis.from_dict(values)
+    run = excited_slide(machine, 4.0)
+    assert run.units["excitation_n_m"] == "N·m" and set(np.unique(run["excitation_n_m"])) == {-4.0, 0.0, 4.0}
+    assert "excitation_n_m" not in axis.simulate(axis.trajectories[0])
+    (found,) = axis.frf(run)
+    assert found["comparison"]["delay_s"]["value"] == pytest.approx(3e-4, abs=6e-6)
+    assert found["traps"] == [] and found["fit"]["modes"]
+    # As arrays with other names, once more.
+    log = {name: run[name] for name in run}
+    log["added"] = log.pop("excitation_n_m")
+    assert axis.frf([log], columns={"added": "excitation_n_m"}) == [found]
+
+    def worst(tuned: fa.Axis) -> float:
+        values = tuned.to_dict()
+        values["actuator"]["delay_us"] += 300
+        return float(fa.Axis.from_dict(values).analyse(masses=1.0)["worst"]["sensitivity"])
+
+    blind, _ = axis.tune(masses=1.0, notch=False)
+    seeing, report = axis.tune(masses=1.0, notch=False, frf=run)
+    assert worst(blind) > 2.0 and worst(seeing) < 1.7
+    assert any("1 measured responses" in note for note in report["notes"])
+
+
+def test_logs_without_excitation_are_no_responses_to_tune_on(root: Path) -> None:
+    axis = fa.Axis.load(root / "data/axes/rack.toml")
+    run = axis.simulate(axis.trajectories[0])
+    (found,) = axis.frf([run])
+    assert found["margins"] is None and any(trap["refused"] for trap in found["traps"])
+    with pytest.raises(fa.LoopError, match="measured response 1: the log has no excitation"):
+        axis.tune(frf=run)
+    with pytest.raises(fa.LoopError, match=r"logs\[0\]: the coherence is 2; valid: from 0 to 1"):
+        axis.frf(run, coherence=2.0)
+    with pytest.raises(fa.SimulationError, match=r"excitation has \d+ values and the motion \d+ control cycles"):
+        axis.simulate(axis.trajectories[0], excitation=np.zeros(10**6))
+    with pytest.raises(fa.SimulationError, match=r"excitation\[1\] is inf; valid: finite"):
+        axis.simulate(axis.trajectories[0], excitation=[0.0, np.inf])

@@ -24,4 +24,5 @@ pub mod store;
 mod strategy_name;
 pub mod terminal;
 
+pub use page::contour_laps::page as machine_page;
 pub use page::discovery::page as discovery_page;

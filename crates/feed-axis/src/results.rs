@@ -4,8 +4,10 @@ use axis_pipeline::compensation::{CompensatedRun, find};
 use axis_pipeline::measured::{LinearMaxAbsError, LinearMeanAbsError, MaxAbsError, MeanAbsError};
 use axis_pipeline::strategies::{STRATEGIES, StrategyKind};
 use axis_pipeline::study::StudyRow;
-use axis_pipeline::summary::{self, NetworkSummary, Summary};
+use axis_pipeline::summary::{self, LoopsSummary, MarginsSummary, NetworkSummary, Summary};
 use axis_pipeline::validation::Validation;
+use axis_sim::Axis;
+use drive_loop::{CutMargins, LoopAnalysis, LoopError, LoopSet};
 use miette::{Result, miette};
 
 use crate::commands::identify::{Friction, Transfer};
@@ -26,6 +28,51 @@ pub struct Results {
     pub compensation: Vec<CompensatedRun>,
     pub study: Vec<StudyRow>,
     pub paper: Option<paper::Tables>,
+    pub loops: Loops,
+}
+
+/// The drive's loops, or why they have no margins.
+pub struct Loops {
+    pub model: Result<LoopAnalysis, LoopError>,
+    /// None where the machine is the model.
+    pub machine: Option<Result<LoopAnalysis, LoopError>>,
+}
+
+impl Loops {
+    fn of(context: &Context) -> Self {
+        let of = |axis: &Axis| LoopAnalysis::of(axis, &LoopSet::default());
+        Self {
+            model: of(&context.axis),
+            machine: context.has_machine.then(|| of(&context.machine)),
+        }
+    }
+
+    fn summary(&self) -> LoopsSummary {
+        let of = |found: &Result<LoopAnalysis, LoopError>| found.as_ref().ok().map(margins);
+        LoopsSummary {
+            model: of(&self.model),
+            machine: of(self.machine.as_ref().unwrap_or(&self.model)),
+        }
+    }
+}
+
+/// The worst margins of all cases.
+fn margins(found: &LoopAnalysis) -> MarginsSummary {
+    let all_stable = found.worst.unstable == 0;
+    let worst = |of: fn(&CutMargins) -> Option<f64>, worse: fn(f64, f64) -> f64| {
+        let all = found.corners.iter().filter_map(|at| of(&at.command));
+        all.reduce(worse).filter(|_| all_stable)
+    };
+    MarginsSummary {
+        cases: found.corners.len(),
+        unstable: found.worst.unstable,
+        sensitivity: found.worst.sensitivity,
+        sensitivity_late: found.worst.sensitivity_late,
+        gain_up: worst(|cut| cut.gain_up, f64::min),
+        gain_down: worst(|cut| cut.gain_down, f64::max),
+        phase_deg: worst(|cut| cut.phase_deg, f64::min),
+        delay_s: worst(|cut| cut.delay_s, f64::min),
+    }
 }
 
 /// Reads the results of all finished stages.
@@ -38,8 +85,11 @@ pub fn gather(context: &Context) -> Result<Results> {
     let folder = context.axis.experiment.as_ref();
     let folder = folder.and_then(|experiment| experiment.paper_tables.as_ref());
     let paper = folder.map(|folder| paper::read(folder)).transpose()?;
+    let loops = Loops::of(context);
+    let mut summary = summarise(context, &validation, &compensation, &training)?;
+    summary.loops = loops.summary();
     Ok(Results {
-        summary: summarise(context, &validation, &compensation, &training)?,
+        summary,
         study: study::load(context)?,
         training,
         friction,
@@ -48,6 +98,7 @@ pub fn gather(context: &Context) -> Result<Results> {
         validation,
         compensation,
         paper,
+        loops,
     })
 }
 
@@ -104,6 +155,7 @@ fn summarise(
             linear_mean_abs_error: LinearMeanAbsError::new(unit, training.linear.mean),
             train_seconds: training.seconds,
         },
+        loops: LoopsSummary::default(),
     })
 }
 

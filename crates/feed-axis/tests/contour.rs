@@ -139,6 +139,62 @@ fn a_program_is_run_in_laps() {
     assert!(html.contains("Path and tool, last lap") && html.contains("Tightest curves"));
 }
 
+/// A right angle with and without a blend of 1 mm; the closed form of a path that stops is twice that of one side.
+#[test]
+fn corners_of_a_program_are_blended() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("corner.ngc");
+    let file = program.display().to_string();
+    let found = |text: &str, more: &[&str]| -> serde_json::Value {
+        std::fs::write(&program, text).unwrap();
+        let asked = [
+            "contour",
+            "--x",
+            STAGE,
+            "--y",
+            STAGE,
+            "--program",
+            &file,
+            "--format",
+            "json",
+        ];
+        let output = run(&[&asked[..], more].concat());
+        assert!(output.status.success(), "{output:?}");
+        serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap()["directions"][0]
+            .clone()
+    };
+    let corners = |found: &serde_json::Value| found["corners"].as_array().unwrap().len();
+    let duration = |found: &serde_json::Value| found["duration_s"].as_f64().unwrap();
+    let lines = "F3000\nG1 X20\nG1 Y20\n";
+    let stopping = found(lines, &[]);
+    // d/V + V/A + A/J of each side.
+    let side = 0.02 / 0.05 + 0.05 / 1.0 + 1.0 / 20.0;
+    assert_eq!(corners(&stopping), 1);
+    assert!(
+        (duration(&stopping) - 2.0 * side).abs() < 1e-9,
+        "{stopping}"
+    );
+    let blended = found(lines, &["--blend", "1"]);
+    assert!(corners(&blended) == 0 && duration(&blended) < 0.98 * duration(&stopping));
+    // A line of the program more, and the same path.
+    let by_word = found(&format!("G64 P1\n{lines}"), &[]);
+    assert_eq!(by_word["laps"], blended["laps"]);
+    assert_eq!(
+        corners(&found(&format!("G61\n{lines}"), &["--blend", "1"])),
+        1
+    );
+    let arc = found(lines, &["--blend", "1", "--blend-shape", "arc"]);
+    assert_eq!(arc["curves"].as_array().unwrap().len(), 1);
+    let asked = ["contour", "--x", STAGE, "--y", STAGE];
+    let message = refuse(&[&asked[..], &["--blend", "1"]].concat());
+    assert!(message.contains("--program"), "{message}");
+    let message = refuse(&[&asked[..], &["--program", &file, "--blend", "-1"]].concat());
+    assert!(
+        message.contains("--blend is -1 mm; valid: from 1e-6"),
+        "{message}"
+    );
+}
+
 /// A quarter of a circle of 5 mm as a rational curve, at its feed and at two others: the curve is tightest
 /// everywhere, so no place of it is listed, and each feed has its row.
 #[test]

@@ -5,10 +5,28 @@ use std::path::{Path, PathBuf};
 use crate::common::{refuse, succeed};
 use serde_json::Value;
 
-/// A file that the command takes for the library: it holds its mark.
+/// A file that the command takes for the library of Linux on x86-64: its header, and the mark.
 fn library(folder: &Path) -> PathBuf {
     let file = folder.join("library.so");
-    std::fs::write(&file, axis_fmu::LIBRARY_MARK).unwrap();
+    let mut bytes = b"\x7fELF\x02\x01\x01".to_vec();
+    bytes.resize(16, 0);
+    bytes.extend([3, 0, 62, 0]);
+    bytes.extend(axis_fmu::LIBRARY_MARK.as_bytes());
+    std::fs::write(&file, bytes).unwrap();
+    file
+}
+
+/// Likewise of Windows.
+fn windows_library(folder: &Path) -> PathBuf {
+    let file = folder.join("library.dll");
+    let mut bytes = b"MZ".to_vec();
+    bytes.resize(0x3c, 0);
+    bytes.extend([0x40, 0, 0, 0]);
+    bytes.extend(b"PE\0\0\x64\x86");
+    bytes.resize(0x40 + 22, 0);
+    bytes.extend([0, 0x20]);
+    bytes.extend(axis_fmu::LIBRARY_MARK.as_bytes());
+    std::fs::write(&file, bytes).unwrap();
     file
 }
 
@@ -49,6 +67,58 @@ fn a_unit_is_written_whole_and_told() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
 }
 
+/// One library for each platform, which its header says.
+#[test]
+fn a_unit_takes_the_libraries_of_several_platforms() {
+    let folder = tempfile::tempdir().unwrap();
+    let (out, linux) = (folder.path().join("belt.fmu"), library(folder.path()));
+    let windows = windows_library(folder.path());
+    let export = export("data/axes/belt.toml", &out, &linux);
+    let both = [&export[..], &["--library", windows.to_str().unwrap()]].concat();
+    for (fmi, platforms) in [
+        ("3", "x86_64-linux, x86_64-windows"),
+        ("2", "linux64, win64"),
+    ] {
+        let said = succeed(&[&both[..], &["--fmi", fmi]].concat());
+        assert!(said.contains(platforms), "{said}");
+    }
+    let message = refuse(&[&both[..], &["--library", linux.to_str().unwrap()]].concat());
+    assert!(message.contains("binaries/x86_64-linux"), "{message}");
+}
+
+/// A unit with its correction inside: that it is among the resources, and what is said of it.
+#[test]
+fn a_compensated_unit_is_written_with_its_correction() {
+    let folder = tempfile::tempdir().unwrap();
+    let (out, library) = (folder.path().join("belt.fmu"), library(folder.path()));
+    let export = export("data/axes/belt.toml", &out, &library);
+    let plan = [&export[..], &["--strategy", "plan"]].concat();
+    let said = succeed(&plan);
+    assert!(
+        said.contains("corrected by plan; references are followed") && said.contains("late"),
+        "{said}"
+    );
+    let told = succeed(&[&plan[..], &["--format", "json"]].concat());
+    let told: Value = serde_json::from_str(&told).unwrap();
+    assert_eq!(
+        (told["kind"].as_str(), told["strategy"].as_str()),
+        (Some("compensated closed loop"), Some("plan"))
+    );
+    assert!(told["look_ahead_cycles"].as_u64() > Some(2));
+    for (strategy, words) in [
+        ("adaptive", "plan, feedback"),
+        ("drive-terms", "export drive"),
+        ("network", "train"),
+    ] {
+        let run = folder.path().join("runs");
+        let run = ["--strategy", strategy, "--run", run.to_str().unwrap()];
+        let message = refuse(&[&export[..], &run].concat());
+        assert!(message.contains(words), "{strategy}: {message}");
+    }
+    let message = refuse(&[&plan[..], &["--plant"]].concat());
+    assert!(message.contains("--plant"), "{message}");
+}
+
 #[test]
 fn what_cannot_be_exported_is_said() {
     let folder = tempfile::tempdir().unwrap();
@@ -57,7 +127,13 @@ fn what_cannot_be_exported_is_said() {
     assert!(message.contains("[control]"), "{message}");
     let message = refuse(&export("no-such.toml", &out, &library));
     assert!(message.contains("no-such.toml"), "{message}");
-    let message = refuse(&export("data/axes/belt.toml", &out, Path::new("/bin/sh")));
+    let axis = "data/axes/belt.toml";
+    let message = refuse(&export(axis, &out, Path::new(axis)));
+    assert!(
+        message.contains("ELF") && message.contains("valid:"),
+        "{message}"
+    );
+    let message = refuse(&export(axis, &out, Path::new("/bin/sh")));
     assert!(
         message.contains("cargo build --release -p feed-axis-fmu"),
         "{message}"

@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use crate::common::{refuse, run, succeed};
+use crate::schema_of::assert_validates;
 
 const AXIS: &str = "data/axes/rack.toml";
 const LATE: &str = "actuator.delay_us=425";
@@ -74,6 +75,7 @@ fn a_hidden_delay_is_measured_and_tuned_with() {
     let found = json(&[
         "frf", &log, "--axis", AXIS, "--report", &page, "--format", "json",
     ]);
+    assert_validates("frf", &found);
     let one = &found["measurements"][0];
     let late = one["comparison"]["delay_s"]["value"].as_f64().unwrap();
     assert!((late - 3e-4).abs() < 6e-6, "{late:e}");

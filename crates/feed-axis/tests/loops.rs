@@ -65,5 +65,11 @@ fn what_cannot_be_tuned_is_refused_in_words() {
     assert!(message.contains("sensitivity"), "{message}");
     let message = refuse(&["analyse", "--axis", axis, "--position", "900"]);
     assert!(message.contains("stroke"), "{message}");
+    let balance = "data/axes/lugre-bench.toml";
+    for command in [&["tune", "--out", &out][..], &["analyse"]] {
+        let message = refuse(&[command, &["--axis", balance]].concat());
+        assert!(message.contains("[control] is none"), "{message}");
+        assert!(message.contains("\"pid\" with proportional"), "{message}");
+    }
     assert!(!std::path::Path::new(&out).exists());
 }

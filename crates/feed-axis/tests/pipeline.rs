@@ -35,19 +35,50 @@ fn compare(a: &str, b: &str) {
     });
 }
 
+/// Two axes with the network of each, from the folder of results.
+fn on_a_circle(runs: &str) {
+    let axis = "data/axes/liu2025.toml";
+    let circle = ["contour", "--x", axis, "--y", axis, "--radius", "5"];
+    let found = |more: &[&str]| -> Value {
+        let output = run(&[&circle[..], &["--laps", "2", "--format", "json"], more].concat());
+        assert!(output.status.success(), "{output:?}");
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let network = ["--compensation", "network", "--runs", runs];
+    let under = found(&[&network[..], &["--quick"]].concat());
+    let none = found(&[]);
+    let error = |found: &Value| {
+        found["directions"][0]["laps"][1]["contour_error_um"]
+            .as_f64()
+            .unwrap()
+    };
+    assert!(error(&under) < 0.8 * error(&none), "{under} {none}");
+    let rows = under["networks"].as_array().unwrap();
+    assert_eq!((rows.len(), &rows[1]["axis"]), (2, &Value::from("Y")));
+    assert!(rows[0]["unseen_um"][0].as_f64() < rows[0]["linear_um"][0].as_f64());
+    // Those of another size are not taken.
+    let message = refuse(&[&circle[..], &network].concat());
+    assert!(
+        message.contains("the trained network of liu2025") && message.contains("--quick"),
+        "{message}"
+    );
+}
+
 /// The whole pipeline, small: its figures against the project's targets, a
 /// second run that does nothing, another number of threads with the same
 /// figures, and damaged or foreign results refused.
 #[test]
 fn the_quick_pipeline_meets_its_figures_and_guards_its_results() {
     let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("run");
+    let out = folder.path().join("liu2025");
     let out = out.to_str().unwrap();
     succeed(&["pipeline", "--quick", "--out", out]);
     let summary = read(out);
     check_figures(&summary);
+    on_a_circle(folder.path().to_str().unwrap());
     let page = std::fs::read_to_string(format!("{out}/report.html")).unwrap();
     assert!(page.len() > 100_000 && !page.contains("NaN"));
+    assert!(page.contains("Margins of each case"));
     assert!(!page.contains("src=\"http") && !page.contains("href=\"http"));
 
     // Nothing is run twice.
@@ -110,7 +141,11 @@ fn a_pipeline_finishes_without_a_strategy_that_the_axis_cannot_have() {
         said.contains("feedback: left out, this axis cannot have it"),
         "{said}"
     );
-    let trajectories = &read(out)["trajectories"];
+    let summary = read(out);
+    // Of its only loop its file says 60°, which python-control agrees with; the least is with the heaviest load.
+    let phase = summary["loops"]["model"]["phase_deg"].as_f64().unwrap();
+    assert!((54.0..59.0).contains(&phase), "{phase}");
+    let trajectories = &summary["trajectories"];
     for trajectory in trajectories.as_array().unwrap() {
         let compensated = &trajectory["errors_um"]["compensated"];
         assert!(compensated["plan"]["max"].is_f64(), "{compensated}");
@@ -147,6 +182,16 @@ const PAPER_PEAKS: [f64; 6] = [17.07, 15.32, 17.19, 19.07, 11.88, 12.79];
 fn check_figures(summary: &Value) {
     let trajectories = summary["trajectories"].as_array().unwrap();
     assert_eq!(trajectories.len(), 6);
+    // By an independent search and python-control: 1.51 at the start, a little more over the stroke.
+    for which in ["model", "machine"] {
+        let loops = &summary["loops"][which];
+        let sensitivity = loops["sensitivity"].as_f64().unwrap();
+        assert!((1.49..1.54).contains(&sensitivity), "{loops}");
+        assert_eq!(
+            (&loops["cases"], &loops["unstable"]),
+            (&24.into(), &0.into())
+        );
+    }
     let (mut best_peak, mut best_mean) = (0.0_f64, 0.0_f64);
     for (i, t) in trajectories.iter().enumerate() {
         let errors = &t["errors_um"];

@@ -10,7 +10,7 @@
 //! - [`FrequencyResponse`]: estimate with deviation and coherence on each line, without bias in closed loop where the
 //!   excitation is known; over overlapping segments or over whole periods.
 //! - [`ModalFit`]: poles, residues and a delay, with standard deviations.
-//! - [`LoopMargins`]: greatest sensitivity, gain, phase and delay margin of a measured open loop.
+//! - [`LoopMargins`]: maximum sensitivity, gain, phase and delay margin of a measured open loop.
 //!
 //! # Example
 //! Two samples of delay and a gain of 3, excited by a pseudo-random sequence:

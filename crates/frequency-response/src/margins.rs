@@ -17,7 +17,7 @@ pub struct LoopLine {
     pub deviation: f64,
 }
 
-/// The greatest sensitivity, 1/|1 + L|.
+/// The maximum sensitivity, 1/|1 + L|.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensitivityPeak {
     /// Its height.
@@ -35,7 +35,7 @@ pub struct SensitivityPeak {
 /// does so with its present gains. With others, Nyquist's criterion has to be asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopMargins {
-    /// Greatest sensitivity on the lines.
+    /// Maximum sensitivity on the lines.
     pub sensitivity: SensitivityPeak,
     /// Factor by which the gain may rise, above 1; none without a crossing there.
     pub gain_up: Option<f64>,

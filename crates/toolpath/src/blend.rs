@@ -11,6 +11,9 @@ pub enum Blend {
     /// A circular arc: its curvature jumps at both ends, so that a feed of limited jerk must
     /// stop there, unless [`FeedLimits::acceleration_step`](crate::FeedLimits::acceleration_step) allows a step.
     Arc,
+    /// A parabola: what becomes of a corner if one line ends at a constant deceleration while the next one begins at the same
+    /// acceleration. Its curvature jumps at both ends, too.
+    Parabola,
     /// A Bézier curve of degree 5 whose curvature is zero at both ends.
     Quintic,
 }
@@ -26,7 +29,7 @@ impl Blend {
     /// distance d of the corner: arc of radius r, d = r tan(θ/2), distance from the corner
     /// r (1/cos(θ/2) − 1). The quintic has control points at distances d, d/2 and 0 from the
     /// corner on each line; its middle is (d + 5 d/2)/32 · 2 sin(θ/2) = (7/32) d sin(θ/2) from
-    /// the corner.
+    /// the corner. The parabola has them at d, 0 and d; its middle is d/4 · 2 sin(θ/2) = (1/2) d sin(θ/2) from it.
     ///
     /// # Errors
     /// [`ToolpathError::Blend`] if the lines turn by less than 1e-6 rad, or by more than
@@ -63,6 +66,7 @@ impl Blend {
         let (sin, cos) = libm::sincos(half);
         let per_distance = match self {
             Self::Arc => (1.0 - cos) / sin, // (1/cos − 1)/tan
+            Self::Parabola => 0.5 * sin,
             Self::Quintic => 7.0 / 32.0 * sin,
         };
         let most = 0.5 * before.length().min(after.length());
@@ -77,6 +81,7 @@ impl Blend {
                 let centre = add_scaled(&begin, radius / norm(&out), &out);
                 PathSegment::Arc(Arc::new(centre, begin, t0, 2.0 * half)?)
             }
+            Self::Parabola => PathSegment::bezier(vec![begin, corner, end])?,
             Self::Quintic => {
                 let points = vec![
                     begin,

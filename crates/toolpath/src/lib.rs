@@ -15,11 +15,12 @@
 //! | part | |
 //! |---|---|
 //! | [`Path`] | [`Line`], [`Arc`] (helix), [`Nurbs`], [`Blend`] in 2 or 3 dimensions by arc length, with x′, x″, x‴; junctions checked |
+//! | [`PathBlending`] | blends in place of the corners of lines, within a tolerance |
 //! | [`named`] | circular test, tilted circle, rounded rectangle, butterfly |
 //! | [`FeedProfile`] | s(t) from standstill to standstill within [`FeedLimits`] |
 //! | [`Follower`] | contour error to the foot on the branch that was reached |
 //! | [`iso230_4`] | G, H, D, F of a circle; quadrant glitches |
-//! | `gcode` (feature) | programs of G0 to G3 to paths with feeds |
+//! | `gcode` (feature) | programs of G0 to G3 to paths with feeds; G61 and G64 P |
 //!
 //! ```
 //! use toolpath::named::CircleTest;
@@ -57,9 +58,11 @@
 
 mod arc;
 mod blend;
+mod blending;
 mod contour;
 mod error;
 mod feed;
+mod flattened;
 #[cfg(feature = "gcode")]
 pub mod gcode;
 pub mod iso230_4;
@@ -74,6 +77,7 @@ mod vector;
 
 pub use arc::Arc;
 pub use blend::Blend;
+pub use blending::PathBlending;
 pub use contour::{Follower, Foot, nearest_point, tangent_estimate};
 pub use error::ToolpathError;
 pub use feed::{AxesPoint, FeedLimits, FeedPoint, FeedProfile};

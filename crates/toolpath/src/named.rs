@@ -120,8 +120,8 @@ impl CircleTest {
 }
 
 /// A rectangle of `size` (m) about the origin, counterclockwise from the middle of its lower
-/// side, whose corners are arcs of `radius` (m; [`Blend::Arc`]) or quintic blends that begin at
-/// the same places ([`Blend::Quintic`]).
+/// side, whose corners are arcs of `radius` (m; [`Blend::Arc`]) or other blends that begin at
+/// the same places.
 ///
 /// # Errors
 /// [`ToolpathError::Invalid`] if a size is not positive or the radius not less than half of the
@@ -165,6 +165,7 @@ pub fn rounded_rectangle(
                 let towards = [corner[0] - begin[0], corner[1] - begin[1]];
                 Arc::new(centre, begin, towards, FRAC_PI_2)?.into()
             }
+            Blend::Parabola => PathSegment::bezier(vec![begin, corner, end])?,
             Blend::Quintic => {
                 let half = |p: [f64; 2]| [0.5 * (p[0] + corner[0]), 0.5 * (p[1] + corner[1])];
                 PathSegment::bezier(vec![begin, half(begin), corner, corner, half(end), end])?

@@ -74,6 +74,15 @@ impl<const D: usize> Nurbs<D> {
         Ok(curve)
     }
 
+    /// Control points (m) and weights of its pieces in Bézier form.
+    pub(crate) fn bezier_pieces(&self) -> impl Iterator<Item = (Vec<[f64; D]>, Vec<f64>)> {
+        self.pieces.iter().map(|piece| {
+            let point = |(x, w): &([f64; D], f64)| x.map(|x| x / w);
+            let weights = piece.points.iter().map(|(_, w)| *w).collect();
+            (piece.points.iter().map(point).collect(), weights)
+        })
+    }
+
     /// Degree.
     pub fn degree(&self) -> usize {
         self.degree

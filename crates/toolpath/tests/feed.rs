@@ -23,7 +23,7 @@ fn extremes<const D: usize>(profile: &FeedProfile<D>, limits: &FeedLimits<D>, n:
     most
 }
 
-fn within_limits<const D: usize>(profile: &FeedProfile<D>, limits: &FeedLimits<D>, n: u32) {
+pub fn within_limits<const D: usize>(profile: &FeedProfile<D>, limits: &FeedLimits<D>, n: u32) {
     let most = extremes(profile, limits, n);
     assert!(most.iter().all(|m| *m <= 1.0 + 1e-9), "{most:?}");
 }

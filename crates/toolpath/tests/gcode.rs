@@ -3,8 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use proptest::prelude::*;
-use toolpath::gcode::{GcodeError, ProgramRun, read};
-use toolpath::{PathSegment, PathTolerances};
+use toolpath::gcode::{GcodeError, ProgramRun, read, read_blended};
+use toolpath::{Blend, PathSegment, PathTolerances};
 
 fn program(text: &str) -> Vec<ProgramRun> {
     read(text, [0.0; 3], &PathTolerances::default()).unwrap()
@@ -149,9 +149,68 @@ fn errors_say_line_word_and_what_would_be_valid() {
     }
 }
 
+/// G64 P blends the corners of lines from its line on, G61 ends that; a corner at which the feed changes stays.
+#[test]
+fn g64_blends_corners_and_g61_does_not() {
+    let square = "G1 X20 F3000\nY20\nX0\nY0";
+    let corners = |text: &str| -> Vec<usize> {
+        let runs = program(text);
+        runs.iter().map(|run| run.path.corners().len()).collect()
+    };
+    assert_eq!(corners(square), [3]);
+    assert_eq!(corners(&format!("G64 P0.1\n{square}")), [0]);
+    assert_eq!(corners(&format!("G61\n{square}")), [3]);
+    assert_eq!(corners("G64 P0.1\nG1 X20 F3000\nY20\nG61 X0\nY0"), [1]);
+    assert_eq!(corners("G64 P0.1\nG1 X20 F3000\nY20 F1000\nX0"), [0, 0]);
+    // 0.1 mm, and 0.004 inches, wherever G20 stands in the line.
+    let cut = |text: &str| {
+        let path = &program(text)[0].path;
+        let whole = path.segments()[1].length();
+        let middle = path.segments()[1].at(0.5 * whole).position;
+        (middle[0] - 0.02).hypot(middle[1])
+    };
+    assert!((cut(&format!("G64 P0.1\n{square}")) - 1e-4).abs() < 1e-12);
+    let inches = square.replace("20", "0.787401574803149606");
+    for line in ["G20 G64 P0.004", "G64 P0.004 G20"] {
+        let cut = cut(&format!("{line}\n{inches}"));
+        assert!((cut - 0.1016e-3).abs() < 1e-9, "{cut}");
+    }
+    // Before its first G61 or G64 what the caller says.
+    let tolerances = PathTolerances::default();
+    let blending = (Blend::Arc, Some(1e-4));
+    let of = |text: &str| read_blended(text, [0.0; 3], &tolerances, blending).unwrap();
+    assert!(of(square)[0].path.corners().is_empty());
+    assert!(matches!(
+        of(square)[0].path.segments()[1],
+        PathSegment::Arc(_)
+    ));
+    assert_eq!(of(&format!("G61\n{square}"))[0].path.corners().len(), 3);
+    // In the plane it is the same path.
+    let flat = of(square)[0].path.flattened().unwrap();
+    assert!((flat.length() - of(square)[0].path.length()).abs() < 1e-12);
+    let quintic = program(&format!("G64 P0.1\n{square}"));
+    let flat = quintic[0].path.flattened().unwrap();
+    assert!(flat.corners().is_empty() && (flat.length() - quintic[0].path.length()).abs() < 1e-12);
+    assert!(program("G1 X1 Z1 F100")[0].path.flattened().is_none());
+    for (text, valid) in [
+        ("G64", "G64 with P"),
+        ("G64 P-1", "G64 with P"),
+        ("G64 P0", "G64 with P"),
+        ("G1 X1 P1 F100", "G64 in the same line"),
+        ("G61 P1", "G64 in the same line"),
+        ("G61 G64 P1", "one word of its group"),
+    ] {
+        let message = refused(text);
+        assert!(
+            message.contains("line 1") && message.contains(valid),
+            "{message}"
+        );
+    }
+}
+
 proptest! {
     #[test]
-    fn any_text_is_taken(text in "([GXYZIJKRFNM][-+]?[0-9]{0,3}[.]?[0-9]{0,2} ?|\n|[ -~]){0,40}") {
+    fn any_text_is_taken(text in "([GXYZIJKRFNMP][-+]?[0-9]{0,3}[.]?[0-9]{0,2} ?|\n|[ -~]){0,40}") {
         let _ = read(&text, [0.0; 3], &PathTolerances::default());
     }
 

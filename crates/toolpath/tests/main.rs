@@ -3,6 +3,7 @@
 // The promised bits are of the library; here the standard functions are exact enough.
 #![allow(clippy::disallowed_methods)]
 
+mod blending;
 mod circle;
 mod contour;
 mod feed;

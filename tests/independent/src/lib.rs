@@ -25,7 +25,8 @@
 //! [`HeatedScrew`] is the same axis' heat by brute force, hour by hour.
 //!
 //! [`slide_log`] is another machine, a slide on a linear motor whose drive has more in it than its axis file
-//! says. [`bench_log`] is a motor on a bench that never rests, [`spun_log`] a small one that is spun slowly.
+//! says. [`bench_log`] is a motor on a bench that never rests, [`spun_log`] a small one that is spun slowly,
+//! [`joint_log`] a robot joint under gravity.
 //!
 //! [`cases`] holds the table of what is hidden; [`write_case`] writes one as two logs to
 //! fit, two to check, the axis file and the truth.
@@ -40,6 +41,7 @@ mod heat;
 mod heat_cases;
 mod heat_logs;
 mod hidden;
+mod joint;
 mod logger;
 mod machine;
 mod motion;
@@ -59,6 +61,7 @@ pub use heat::{HeatLaws, HeatNumbers, HeatedScrew, Viscosity};
 pub use heat_cases::{HOURS_TO_CHECK, HOURS_TO_FIT, HeatHours, Stroke, there_and_back};
 pub use heat_logs::write_heat;
 pub use hidden::{Bump, Cogging, Friction, Hidden, Periodic, Thermal};
+pub use joint::{Joint, joint_log};
 pub use logger::{Columns, Logger, Table};
 pub use machine::Machine;
 pub use motion::{Chirp, Motion, Setpoint, SmoothMove, exercises, s_curve};

@@ -10,40 +10,48 @@ use toolpath::named::Direction;
 use super::contour::Measured;
 use super::contour_rows::{Bench, Task, laps, strategy};
 
-/// Pairs by their axis files.
-const PAIRS: [[&str; 2]; 12] = [
-    ["liu2025", "liu2025-y"],
-    ["screw-datasheet", "belt"],
-    ["belt", "belt"],
-    ["rack", "belt"],
-    ["rack", "rack"],
-    ["linear-motor", "linear-motor"],
-    ["linear-stage", "linear-stage"],
-    ["linear-motor", "screw-heat"],
-    ["rack", "linear-motor"],
-    ["emps", "linear-stage"],
-    ["liu2025", "rotary-table"],
-    ["rack-push", "linear-stage"],
+/// An axis file of each kind of mechanism that moves along a line; of the linear motor one with currents and one that takes a force.
+const KINDS: [(&str, &str); 7] = [
+    ("screw", "liu2025-y"),
+    ("screw of a data sheet", "screw-datasheet"),
+    ("rack", "rack"),
+    ("belt", "belt"),
+    ("linear motor", "linear-motor"),
+    ("force source", "linear-stage"),
+    ("rigid mass", "emps"),
 ];
 
-/// All pairs on a circle of 20 mm at 3 m/min.
+/// Pairs that no circle can be run on: a load that turns, an axis without a controller.
+const REFUSED: [[&str; 2]; 2] = [["liu2025", "rotary-table"], ["rack-push", "linear-stage"]];
+
+/// Each pair of kinds on a circle of 20 mm at 3 m/min, and those that are refused.
 pub fn pairs(bench: &Bench) -> Result<Measured> {
-    let all: Vec<(bool, String)> = PAIRS.par_iter().map(|pair| one(bench, *pair)).collect();
+    let mut asked: Vec<([&str; 2], String)> = Vec::new();
+    for (i, (x, x_file)) in KINDS.iter().enumerate() {
+        let partners = KINDS[i..].iter();
+        asked.extend(partners.map(|(y, y_file)| ([*x_file, *y_file], format!("{x} and {y}"))));
+    }
+    let pairs = asked.len();
+    asked.extend(REFUSED.map(|pair| (pair, pair.join(" and "))));
+    let all: Vec<(bool, String)> = (asked.par_iter())
+        .map(|(pair, name)| one(bench, *pair, name))
+        .collect();
     let ran = all.iter().filter(|(ran, _)| *ran).count();
     let words: Vec<&str> = all.iter().map(|(_, words)| words.as_str()).collect();
     Ok(Measured {
-        what: "pairs of kinds, R 20 mm, 3 m/min: none, plan, adaptive feedback second lap"
-            .to_owned(),
-        goal: "ten run, or one sentence why not".to_owned(),
-        found: format!("{ran} of {} ran", PAIRS.len()),
-        met: Some(ran >= 10),
+        what: format!(
+            "pairs of {} kinds of axis, R 20 mm, 3 m/min: none, plan, adaptive feedback second lap",
+            KINDS.len()
+        ),
+        goal: "each runs, or one sentence why not".to_owned(),
+        found: format!("{ran} of {pairs} ran; {} others refused", REFUSED.len()),
+        met: Some(ran == pairs),
         note: words.join("; "),
     })
 }
 
-fn one(bench: &Bench, [x, y]: [&str; 2]) -> (bool, String) {
+fn one(bench: &Bench, [x, y]: [&str; 2], name: &str) -> (bool, String) {
     let read = |name: &str| Axis::read(&bench.folder.join(format!("{name}.toml")));
-    let name = format!("{x} and {y}");
     let axes = match (read(x), read(y)) {
         (Ok(x), Ok(y)) => [x, y],
         (Err(error), _) | (_, Err(error)) => return (false, format!("{name}: {error}")),

@@ -23,7 +23,7 @@ use toolpath::named::{CircleTest, Direction, butterfly};
 use toolpath::{FeedLimits, FeedProfile};
 
 use super::contour::Measured;
-use super::{contour_geometry, contour_pairs};
+use super::{contour_geometry, contour_networks, contour_pairs};
 
 /// A row: how it is found.
 type Row = fn(&Bench) -> Result<Measured>;
@@ -39,6 +39,7 @@ pub const ROWS: &[(&str, Row)] = &[
     ("tilted", Bench::tilted),
     ("butterfly", Bench::butterfly),
     ("learned", Bench::learned),
+    ("networks", contour_networks::networks),
     ("coupling", Bench::coupling),
     ("base", Bench::base),
     ("foot", contour_geometry::foot),

@@ -15,7 +15,7 @@ use compensator::{Compensator, Correction, Sample};
 use independent_axis::{HeatedScrew, Motion, there_and_back};
 use miette::{IntoDiagnostic, Result, miette};
 use serde::{Deserialize, Serialize};
-use trajectories::{Limits, Motion as _, Program, Step};
+use trajectories::{Limits, Program, Step};
 
 use super::heat_identified::Fitted;
 

@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod contour;
 mod contour_geometry;
+mod contour_networks;
 mod contour_pairs;
 mod contour_rows;
 pub mod crates;
@@ -20,3 +21,4 @@ pub mod peers_cases;
 pub mod publish;
 pub mod torture;
 pub mod tuning;
+mod tuning_files;

@@ -7,21 +7,41 @@ use axis_sim::Axis;
 use clap::Args;
 use drive_loop::{LoopSet, TuneSettings, Tuning, moves, with_acceleration};
 use feed_axis::output::{Worded, note, print};
-use miette::{IntoDiagnostic, Result};
+use miette::{IntoDiagnostic, Result, miette};
 use serde::Serialize;
+
+use super::tuning_files;
 
 /// Options of the command.
 #[derive(Args)]
 pub struct Options {
     /// Folder of the axis files
     #[arg(long, value_name = "DIR", default_value = "data/axes")]
-    axes: PathBuf,
-    /// Names of the axes [default: all seven]
+    pub axes: PathBuf,
+    /// Write axis files with tuned gains instead, as `feed-axis tune` makes them, of every file in the
+    /// folder that can be tuned, and print a Markdown table of their errors before and after
+    #[arg(long)]
+    write: bool,
+    /// Folder to write them to
+    #[arg(
+        long,
+        value_name = "DIR",
+        default_value = "data/axes/tuned",
+        requires = "write"
+    )]
+    pub out: PathBuf,
+    /// Names of the axes [default: all]
     #[arg(value_name = "AXIS")]
-    names: Vec<String>,
+    pub names: Vec<String>,
 }
 
-/// An axis, and what an independent search under the same constraints (greatest sensitivity 1.6, 2
+impl Options {
+    pub fn asked(&self, name: &str) -> bool {
+        self.names.is_empty() || self.names.iter().any(|n| n == name)
+    }
+}
+
+/// An axis, and what an independent search under the same constraints (maximum sensitivity 1.6, 2
 /// with one more cycle, over stroke ends, mass −10 and +40 %, sliding and stuck) left of its peak error
 /// on the first trajectory: without and with the acceleration fed forward, µm or µrad.
 const AXES: [(&str, [f64; 2]); 7] = [
@@ -55,6 +75,9 @@ struct Row {
 
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
+    if options.write {
+        return tuning_files::command(options);
+    }
     let settings = |axis: &Axis| {
         let stroke = &axis.stroke;
         let [least, most] = [stroke.minimum, stroke.maximum];
@@ -69,9 +92,8 @@ pub fn command(options: &Options) -> Result<()> {
             ..TuneSettings::default()
         }
     };
-    let asked = |name: &str| options.names.is_empty() || options.names.iter().any(|n| n == name);
     let mut rows = Vec::new();
-    for (name, reference) in AXES.into_iter().filter(|(name, _)| asked(name)) {
+    for (name, reference) in AXES.into_iter().filter(|(name, _)| options.asked(name)) {
         let axis = Axis::read(&options.axes.join(format!("{name}.toml")))?;
         let begun = std::time::Instant::now();
         let tuned = Tuning::of(&axis, &settings(&axis)).into_diagnostic()?;
@@ -101,6 +123,14 @@ pub fn command(options: &Options) -> Result<()> {
             compliance_slope: [report.file.compliance_slope, report.tuned.compliance_slope],
             proven_stable: report.proven_stable,
         });
+    }
+    if rows.is_empty() {
+        let all: Vec<&str> = AXES.iter().map(|(name, _)| *name).collect();
+        return Err(miette!(
+            "no axis is named {}; valid: {}",
+            options.names.join(", "),
+            all.join(", ")
+        ));
     }
     let text = words(&rows);
     print("tuning", &Worded { text, value: rows })
@@ -156,7 +186,7 @@ fn words(rows: &[Row]) -> String {
 }
 
 /// Three significant digits.
-fn three(value: f64) -> String {
+pub fn three(value: f64) -> String {
     let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
     rounded.to_string()
 }

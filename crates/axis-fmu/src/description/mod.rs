@@ -8,6 +8,7 @@ use std::fmt::Write;
 use axis_sim::Axis;
 use trajectories::Motion;
 
+use crate::correction::UnitCorrection;
 use crate::kind::UnitKind;
 use crate::measure::{BASE, UnitDefinition};
 use crate::unit::Unit;
@@ -36,7 +37,14 @@ pub fn description(unit: &Unit, version: FmiVersion) -> String {
         escaped(&axis.name),
         escaped(&match unit.kind() {
             UnitKind::ClosedLoop => axis.description.clone(),
-            kind => format!("{} ({})", axis.description, kind.words()),
+            UnitKind::Plant => format!("{} ({})", axis.description, unit.kind().words()),
+            UnitKind::Compensated => format!(
+                "{} ({}, {}; references are followed {} control periods late)",
+                axis.description,
+                unit.kind().words(),
+                unit.correction().map_or("", UnitCorrection::strategy),
+                unit.look_ahead(),
+            ),
         }),
         match version {
             FmiVersion::V2 => "guid",
@@ -54,20 +62,20 @@ pub fn description(unit: &Unit, version: FmiVersion) -> String {
             "<DefaultExperiment startTime=\"0\" stopTime=\"{}\" stepSize=\"{}\"/>\n\
              <ModelVariables>\n{list}</ModelVariables>\n\
              <ModelStructure>\n{structure}</ModelStructure>\n</fmiModelDescription>\n",
-            stop_time(axis),
+            stop_time(axis, unit.look_ahead()),
             axis.period
         )
 }
 
-/// When an importer stops that was not told: after the axis' first trajectory, on a control cycle;
-/// after 1 s where it has none.
-fn stop_time(axis: &Axis) -> f64 {
+/// When an importer stops that was not told: after the axis' first trajectory, which is followed
+/// `late` cycles late, on a control cycle; after 1 s where it has none.
+fn stop_time(axis: &Axis, late: usize) -> f64 {
     let first = axis.trajectories.first();
     let planned = first.and_then(|spec| axis.plan(spec).ok());
     let duration = planned.map_or(1.0, |motion| motion.duration());
     // Whole periods per second and not seconds per period, so that the number is a short one.
     let frequency = (1.0 / axis.period).round();
-    let cycles = (duration / axis.period * (1.0 - 1e-9)).ceil().max(1.0);
+    let cycles = (duration / axis.period * (1.0 - 1e-9)).ceil().max(1.0) + late as f64;
     match (frequency * axis.period - 1.0).abs() < 1e-12 {
         true => cycles / frequency,
         false => cycles * axis.period,
@@ -118,6 +126,7 @@ fn naming(variable: &Variable) -> String {
         }
         VariableKind::Parameter { .. }
         | VariableKind::ExactBetween
+        | VariableKind::Compensation
         | VariableKind::StartPosition => {
             "causality=\"parameter\" variability=\"fixed\" initial=\"exact\""
         }

@@ -128,7 +128,7 @@ fn refused<T>(why: &str) -> Result<T, UnitError> {
 
 /// FNV-1a, 64 bits: Fowler, Noll, Vo; IETF draft-eastlake-fnv, Section 2. It finds damage, and
 /// no one who means harm.
-fn digest(bytes: &[u8]) -> u64 {
+pub(super) fn digest(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
     })

@@ -8,11 +8,13 @@ use std::sync::Arc;
 
 use axis_sim::{Axis, ClosedLoop};
 
+use crate::correction::UnitCorrection;
 use crate::error::UnitError;
 use crate::history::History;
 use crate::kind::UnitKind;
 use crate::mode::FmiMode;
 use crate::parameters;
+use crate::run::Corrected;
 use crate::simulated::Simulated;
 use crate::variables::Variables;
 
@@ -38,6 +40,7 @@ struct File {
     name: String,
     text: String,
     axis: Axis,
+    correction: Option<UnitCorrection>,
     variables: Variables,
 }
 
@@ -51,13 +54,37 @@ impl Unit {
         Self::of(UnitKind::ClosedLoop, name, text)
     }
 
-    /// An instance of that kind.
+    /// An instance of that kind; a compensated one is made by [`Unit::compensated`].
     ///
     /// # Errors
-    /// [`UnitError::Axis`], [`UnitError::Setup`] if the axis cannot be simulated.
+    /// [`UnitError::Axis`], [`UnitError::Setup`] if the axis cannot be simulated;
+    /// [`UnitError::NoCorrection`].
     pub fn of(kind: UnitKind, name: &str, text: &str) -> Result<Self, UnitError> {
+        match kind {
+            UnitKind::ClosedLoop | UnitKind::Plant => Self::with(kind, name, text, |_| Ok(None)),
+            UnitKind::Compensated => Err(UnitError::NoCorrection),
+        }
+    }
+
+    /// An instance of the axis in its closed loop with the correction of this text
+    /// ([`UnitCorrection::text`]).
+    ///
+    /// # Errors
+    /// As [`Unit::of`] and [`UnitCorrection::parse`].
+    pub fn compensated(name: &str, text: &str, correction: &str) -> Result<Self, UnitError> {
+        let made = |axis: &Axis| UnitCorrection::parse(axis, correction).map(Some);
+        Self::with(UnitKind::Compensated, name, text, made)
+    }
+
+    fn with(
+        kind: UnitKind,
+        name: &str,
+        text: &str,
+        correction: impl FnOnce(&Axis) -> Result<Option<UnitCorrection>, UnitError>,
+    ) -> Result<Self, UnitError> {
         let axis = Axis::parse(name, text)?;
         ClosedLoop::new(&axis)?;
+        let correction = correction(&axis)?;
         let variables = Variables::of(kind, &axis, name, text)?;
         Ok(Self {
             mode: FmiMode::Instantiated,
@@ -71,9 +98,20 @@ impl Unit {
                 name: name.to_owned(),
                 text: text.to_owned(),
                 axis,
+                correction,
                 variables,
             }),
         })
+    }
+
+    /// The correction of a compensated one.
+    pub fn correction(&self) -> Option<&UnitCorrection> {
+        self.file.correction.as_ref()
+    }
+
+    /// Control periods by which the axis follows its references late: 0 without a correction.
+    pub fn look_ahead(&self) -> usize {
+        self.correction().map_or(0, UnitCorrection::look_ahead)
     }
 
     /// Its variables.
@@ -104,11 +142,13 @@ impl Unit {
     /// The token that a description and its library must agree in: the axis, the program's version
     /// and the kind.
     pub fn token(&self) -> String {
+        let correction = self.correction().map_or("", UnitCorrection::text);
+        let digest = bytes::digest(correction.as_bytes());
         format!(
             "{}-{}{}",
             self.file.axis.fingerprint,
             env!("CARGO_PKG_VERSION"),
-            self.file.kind.mark()
+            self.file.kind.mark(digest)
         )
     }
 
@@ -228,7 +268,12 @@ impl Unit {
                 changed_axis = parameters::with(name, text, changed.into_iter())?;
                 &changed_axis
             };
-            let run = Simulated::begin(self.file.kind, axis, &self.given())?;
+            let correction = self.correction().filter(|_| self.is_compensated());
+            let corrected = Corrected {
+                law: correction.map(UnitCorrection::law),
+                look_ahead: self.look_ahead(),
+            };
+            let run = Simulated::begin(self.file.kind, axis, &self.given(), corrected)?;
             self.run = Some(run);
             self.begun.clone_from(&self.values);
             self.history = History::default();

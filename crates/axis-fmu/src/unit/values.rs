@@ -22,6 +22,7 @@ impl Unit {
             VariableKind::Input(_)
             | VariableKind::Parameter { .. }
             | VariableKind::ExactBetween
+            | VariableKind::Compensation
             | VariableKind::StartPosition => {
                 return Ok(self
                     .values
@@ -66,20 +67,17 @@ impl Unit {
         match &set.kind {
             VariableKind::Time => return Err(refused("the steps make it")),
             VariableKind::Output(_) => return Err(refused("it is an output")),
-            VariableKind::Parameter { .. }
-            | VariableKind::ExactBetween
-            | VariableKind::StartPosition
-                if !is_before =>
-            {
+            kind if kind.is_parameter() && !is_before => {
                 return Err(refused(
                     "it is fixed; valid: before the initialization ends",
                 ));
             }
-            VariableKind::ExactBetween if value != 0.0 && value != 1.0 => {
+            kind if kind.is_switch() && value != 0.0 && value != 1.0 => {
                 return Err(refused(&format!("{value} is neither; valid: 0 or 1")));
             }
             VariableKind::Parameter { .. }
             | VariableKind::ExactBetween
+            | VariableKind::Compensation
             | VariableKind::StartPosition
             | VariableKind::Input(_) => {}
         }
@@ -97,10 +95,17 @@ impl Unit {
 
     /// Whether outputs show the machine between two samples as it is there.
     pub(super) fn is_exact(&self) -> bool {
+        self.is_on(|kind| matches!(kind, VariableKind::ExactBetween))
+    }
+
+    /// Whether its correction is switched on; of a unit that has one.
+    pub(super) fn is_compensated(&self) -> bool {
+        self.is_on(|kind| matches!(kind, VariableKind::Compensation))
+    }
+
+    fn is_on(&self, is_it: impl Fn(&VariableKind) -> bool) -> bool {
         let mut all = self.file.variables.iter().zip(&self.values);
-        all.any(|(variable, value)| {
-            matches!(variable.kind, VariableKind::ExactBetween) && *value != 0.0
-        })
+        all.any(|(variable, value)| is_it(&variable.kind) && *value != 0.0)
     }
 
     /// The inputs as the loop takes them.

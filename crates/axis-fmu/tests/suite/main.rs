@@ -1,5 +1,6 @@
 //! Tests of units.
 
+mod compensated;
 mod orders;
 mod package;
 mod parameters;

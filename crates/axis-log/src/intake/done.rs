@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::plus_minus::PlusMinus;
 use crate::table::{Note, OtherUnit};
 use crate::unit::unit_of;
 
@@ -352,18 +353,16 @@ impl fmt::Display for Done {
             ),
             Self::Aligned { file, found } => write!(
                 f,
-                "{file}: its clock is {:.4} ± {:.4} ms late ({} against {}, correlation {:.4}); corrected",
-                1e3 * found.delay,
-                1e3 * found.standard_error,
+                "{file}: its clock is {} ms late ({} against {}, correlation {:.4}); corrected",
+                PlusMinus::new(1e3 * found.delay, 1e3 * found.standard_error, 4),
                 found.channels[1],
                 found.channels[0],
                 found.correlation
             ),
             Self::DelayDiffers { file, found } => write!(
                 f,
-                "{file}: after its delay_ms it is {:.4} ± {:.4} ms late ({} against {}); left unchanged",
-                1e3 * found.delay,
-                1e3 * found.standard_error,
+                "{file}: after its delay_ms it is {} ms late ({} against {}); left unchanged",
+                PlusMinus::new(1e3 * found.delay, 1e3 * found.standard_error, 4),
                 found.channels[1],
                 found.channels[0]
             ),

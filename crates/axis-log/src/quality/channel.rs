@@ -10,6 +10,7 @@ use super::quantum::{Quantum, quantum};
 use crate::log::Log;
 use crate::numeric::align::{Free, align};
 use crate::numeric::grid::Grid;
+use crate::plus_minus::PlusMinus;
 
 /// How a log is sampled.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -193,18 +194,20 @@ impl fmt::Display for ChannelQuality {
         if let Some(jitter) = self.jitter {
             write!(
                 f,
-                "; samples jitter under even stamps by {:.2} ± {:.2} % of a period ({:.2} us)",
-                100.0 * jitter.share,
-                100.0 * jitter.share * jitter.standard_error / jitter.rms,
+                "; samples jitter under even stamps by {} % of a period ({:.2} us)",
+                PlusMinus::new(
+                    100.0 * jitter.share,
+                    100.0 * jitter.share * jitter.standard_error / jitter.rms,
+                    2
+                ),
                 1e6 * jitter.rms
             )?;
         }
         match &self.delay {
             Some(d) => write!(
                 f,
-                "; {:.4} ± {:.4} ms behind {}",
-                1e3 * d.seconds,
-                1e3 * d.standard_error,
+                "; {} ms behind {}",
+                PlusMinus::new(1e3 * d.seconds, 1e3 * d.standard_error, 4),
                 d.against
             ),
             None => Ok(()),

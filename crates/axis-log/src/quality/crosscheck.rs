@@ -8,6 +8,7 @@ use super::relation::{Relation, RelationLaw};
 use crate::log::{Log, TIME_CHANNEL};
 use crate::mapping::{ColumnMap, Mapping};
 use crate::numeric::align::{Fit, Free, align, integral};
+use crate::plus_minus::PlusMinus;
 use crate::select::in_its_unit;
 use crate::source_unit::slipped_unit;
 use crate::table::Head;
@@ -298,7 +299,8 @@ impl fmt::Display for Finding {
         )?;
         match self.delay {
             Some([delay, error]) => {
-                write!(f, ", late by {:.3} ± {:.3} ms)", 1e3 * delay, 1e3 * error)
+                let late = PlusMinus::new(1e3 * delay, 1e3 * error, 3);
+                write!(f, ", late by {late} ms)")
             }
             None => f.write_str(")"),
         }

@@ -7,6 +7,7 @@
 
 use std::collections::BTreeMap;
 
+use axis_log::PlusMinus;
 use lugre::identify::ConstantSpeedRun;
 use nalgebra::{SMatrix, SVector};
 
@@ -67,10 +68,9 @@ pub(super) fn runs(records: &[Record<'_>]) -> Varying {
     let inertia = found.map_or(filed, |[value, _]| value);
     let note = found.map(|[value, error]| {
         format!(
-            "too few stretches of constant speed: friction was read from {} short windows of slowly changing speed as well, with the inertia that they show, {:.3} ± {:.3} times the axis file's",
+            "too few stretches of constant speed: friction was read from {} short windows of slowly changing speed as well, with the inertia that they show, {} times the axis file's",
             windows.len(),
-            value / filed,
-            error / filed
+            PlusMinus::new(value / filed, error / filed, 3)
         )
     });
     let lever = record.axis.friction.lever(record.axis.travel_per_radian());

@@ -7,6 +7,7 @@
 
 mod adaptive;
 mod adaptive_feedback;
+mod cycle_law;
 mod drive_terms;
 mod feedback;
 mod feedback_helps;
@@ -33,6 +34,7 @@ use trajectories::Motion;
 use crate::PipelineError;
 use crate::heat::HeatAhead;
 use crate::residuals::AnyLearner;
+pub use cycle_law::{CYCLE_BY_CYCLE, CycleLaw, PositionLaw, StreamedPlan};
 pub use drive_terms::reversal_start;
 pub use feedforward::Feedforward;
 pub use network::KIND as NETWORK;

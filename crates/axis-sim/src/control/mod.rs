@@ -91,9 +91,17 @@ pub trait Control: fmt::Debug + Send + Sync {
         None
     }
 
+    /// A PID controller of the position in the terms of a cascade, run once in each `period` (s) on a
+    /// load that moves by `travel` a radian: its speed is the difference of the position over a
+    /// period, and its integral sees the position error alone. None if it is no PID controller, or
+    /// has no derivative.
+    fn pid(&self, _travel: f64, _period: f64) -> Option<Cascade> {
+        None
+    }
+
     /// The values of a control of this kind with other gains, what `gains` leaves out as in
     /// `values`, those that it is made from, on a load that moves by `travel` a radian. None where
-    /// it is no position controller over a speed controller.
+    /// it is neither [`Control::cascade`] nor [`Control::pid`].
     fn retuned(&self, _values: &Values, _gains: &CascadeGains, _travel: f64) -> Option<Values> {
         None
     }

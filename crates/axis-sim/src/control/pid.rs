@@ -6,13 +6,15 @@
 
 use std::sync::Arc;
 
+use compensator::{Cascade, Passage};
+
 use super::filter::Filter;
 use super::output::Output;
-use super::{Control, Controller, Demand, Situation};
+use super::{CascadeGains, Control, Controller, Demand, Situation};
 use crate::actuator::{Effort, Surroundings};
 use crate::cycle::Measured;
 use crate::part::units::{FREQUENCY, PID_DERIVATIVE, PID_INTEGRAL, PID_PROPORTIONAL};
-use crate::part::{Known, PartError, PartKind, Role, quantity};
+use crate::part::{Known, PartError, PartKind, Role, Values, quantity};
 
 pub(super) static KIND: PartKind<dyn Control> = PartKind {
     name: "pid",
@@ -51,6 +53,36 @@ struct Pid {
 impl Control for Pid {
     fn velocity_gain(&self, _: f64) -> Option<f64> {
         None
+    }
+
+    /// u = k_p (F ė/r + P e) + k_i P ∫e with k_p = r K_D, P = K_P/(r K_D), k_i = K_I/P, r the travel.
+    fn pid(&self, travel: f64, period: f64) -> Option<Cascade> {
+        if self.derivative <= 0.0 || self.proportional <= 0.0 {
+            return None;
+        }
+        let position = self.proportional / (travel * self.derivative);
+        let lowpass = Filter::low_pass(self.lowpass, period).ok()?;
+        Some(Cascade {
+            position,
+            velocity_feedforward: 1.0,
+            acceleration_feedforward: 0.0,
+            speed: travel * self.derivative,
+            speed_integral: self.integral / position,
+            from_motor: false,
+            passage: Passage {
+                speed: Some(lowpass.law()),
+                ..Passage::default()
+            },
+        })
+    }
+
+    fn retuned(&self, values: &Values, gains: &CascadeGains, travel: f64) -> Option<Values> {
+        let mut values = values.clone();
+        let derivative = gains.speed / travel;
+        values.set("derivative", derivative);
+        values.set("proportional", gains.position * derivative);
+        values.set("integral", gains.speed_integral * gains.position / travel);
+        Some(values)
     }
 
     fn effort(&self) -> Option<Effort> {

@@ -15,7 +15,12 @@ pub(super) static KIND: PartKind<dyn Load> = PartKind {
         quantity("torque", &TORQUE, 0.0, 1e7),
         quantity("hanging_at", &ANGLE, -TAU, TAU),
     ],
-    known: &[Known::by("gravity_torque", |v, by| v.scale("torque", by))],
+    known: &[
+        Known::by("gravity_torque", |v, by| v.scale("torque", by)),
+        // An encoder's zero is set by a stop, a mark or a level: to half a degree, not to a milliradian.
+        Known::by("hanging_angle", |v, by| v.shift("hanging_at", by - 1.0))
+            .with_own_tolerance(0.01, None),
+    ],
     build: |v| {
         Ok(Arc::new(Pendulum {
             torque: v.number("torque")?,

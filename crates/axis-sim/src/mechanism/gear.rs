@@ -1,6 +1,6 @@
 //! `gear`: robot joint or rotary table behind a gear.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use feed_dynamics::Stiffness;
@@ -32,6 +32,12 @@ pub(super) static KIND: PartKind<dyn Mechanism> = PartKind {
         Known::key("gear_stiffness"),
         Known::key("load_inertia"),
         Known::key("stiffness_damping"),
+        // How the motor was mounted on the gear, and its encoder on the motor, is known to nobody.
+        Known::by("kinematic_error_phase", |v, by| {
+            v.shift("kinematic_error_phase", by - 1.0);
+        })
+        .with_own_tolerance(PI, None)
+        .of("kinematic_error"),
     ],
     build,
 };

@@ -112,6 +112,7 @@ pub struct Known {
     scale: Option<fn(&mut Values, f64)>,
     exact: bool,
     own_tolerance: Option<(f64, Option<Role>)>,
+    of: Option<&'static str>,
 }
 
 impl Known {
@@ -122,6 +123,7 @@ impl Known {
             scale: None,
             exact: false,
             own_tolerance: None,
+            of: None,
         }
     }
 
@@ -146,6 +148,7 @@ impl Known {
             scale: Some(scale),
             exact: false,
             own_tolerance: None,
+            of: None,
         }
     }
 
@@ -161,6 +164,14 @@ impl Known {
         }
     }
 
+    /// A parameter of what stands under `key`: there is none where that is 0 or left out.
+    pub const fn of(self, key: &'static str) -> Self {
+        Self {
+            of: Some(key),
+            ..self
+        }
+    }
+
     /// Its own tolerance, and the role whose parameters can cover it ([`Known::with_own_tolerance`]).
     pub fn own_tolerance(&self) -> Option<(f64, Option<Role>)> {
         self.own_tolerance
@@ -168,7 +179,8 @@ impl Known {
 
     /// Whether these values have it: a parameter that is 0 has no share to be off by.
     pub(crate) fn is_in(&self, values: &Values) -> bool {
-        self.scale.is_some() || values.optional(self.name).is_some_and(|value| value != 0.0)
+        let is_there = |key| values.optional(key).is_some_and(|value| value != 0.0);
+        self.of.is_none_or(is_there) && (self.scale.is_some() || is_there(self.name))
     }
 
     /// Multiplies it by a factor; nothing if the values do not have it.

@@ -49,6 +49,11 @@ impl Values {
         }
     }
 
+    /// Adds to a number; one that is not there was 0.
+    pub fn shift(&mut self, key: &'static str, by: f64) {
+        self.set(key, self.or(key, 0.0) + by);
+    }
+
     /// A number that must be there, in SI units.
     ///
     /// # Errors

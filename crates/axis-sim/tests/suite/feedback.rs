@@ -183,7 +183,7 @@ fn wrong_model() {
 }
 
 #[test]
-#[ignore = "half a minute: 300 moves"]
+#[ignore = "slow: .ci/release.d/05-slow-tests.sh"]
 fn fifty_wrong_models() {
     let left = left(50);
     assert!(left[49] < 0.04 && left[25] < 0.02, "{left:?}");

@@ -1,5 +1,7 @@
 //! SI numbers in the units that engineers of feed axes read.
 
+use axis_log::fixed;
+
 /// A unit for people, and what an SI value is multiplied by to be in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadUnit {
@@ -112,21 +114,12 @@ fn with_unit(number: &str, unit: &str) -> String {
     }
 }
 
-fn fixed(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$}");
-    // A rounded zero has no sign.
-    match text.strip_prefix('-') {
-        Some(rest) if rest.chars().all(|c| c == '0' || c == '.') => rest.to_owned(),
-        _ => text,
-    }
-}
-
 /// Decimals that show two digits of a number of this size.
 fn decimals(size: f64) -> usize {
     if size == 0.0 || !size.is_finite() {
         return 2;
     }
-    (1.0 - size.abs().log10().floor()).clamp(0.0, 6.0) as usize
+    (1.0 - size.abs().log10().floor()).clamp(0.0, 9.0) as usize
 }
 
 #[cfg(test)]

@@ -121,8 +121,8 @@ impl Gap {
     pub fn gone(&self) -> String {
         match self.stands_out() {
             true => format!(
-                "{:.1} % of the gap above the noise is gone on motion not used in the fit",
-                100.0 * self.reduction
+                "{} % of the gap above the noise is gone on motion not used in the fit",
+                axis_log::fixed(100.0 * self.reduction, 1)
             ),
             false => "No channel exceeded its noise by more than a fifth: the evidence is from all samples together, on motion not used in the fit as well".to_owned(),
         }

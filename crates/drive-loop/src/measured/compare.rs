@@ -88,7 +88,7 @@ impl ModelAt {
         })
     }
 
-    /// Greatest sensitivity of the model cut at the command; none where it is not stable.
+    /// Maximum sensitivity of the model cut at the command; none where it is not stable.
     pub fn sensitivity(&self) -> Option<f64> {
         let margins = self.corner.margins(&self.model, &self.gains);
         margins.command.sensitivity
@@ -113,11 +113,11 @@ impl ModelAt {
         all.map(|speed| [speed.re, speed.im]).collect()
     }
 
-    /// Size of the filters and the hold that the excitation passes on its way to the command.
+    /// Magnitude of the filters and the hold that the excitation passes on its way to the command.
     pub fn passed(&self, frequency_hz: f64) -> Option<f64> {
         let plant = self.plant(frequency_hz)?;
-        let size = LoopAt::new(&self.model, &plant).passed.norm();
-        (size > 1e-6).then_some(size)
+        let magnitude = LoopAt::new(&self.model, &plant).passed.norm();
+        (magnitude > 1e-6).then_some(magnitude)
     }
 
     /// Frequency of the first antiresonance of the motor's speed, Hz: where, times the frequency, it

@@ -95,7 +95,7 @@ pub struct MeasuredMode {
     pub frequency_hz: WithDeviation,
     /// Damping ratio.
     pub damping: WithDeviation,
-    /// Size of its residue, motor speed per command and s.
+    /// Magnitude of its residue, motor speed per command and s.
     pub residue: f64,
     /// Standard deviation of the residue.
     pub residue_deviation: f64,
@@ -120,7 +120,7 @@ pub struct MeasuredModes {
 /// Margins of the loop with the gains of the file, measured.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct MeasuredMargins {
-    /// Greatest sensitivity of the loop cut at the command, as the command answers to the excitation.
+    /// Maximum sensitivity of the loop cut at the command, as the command answers to the excitation.
     pub sensitivity: WithDeviation,
     /// Its frequency, Hz.
     pub sensitivity_at_hz: f64,
@@ -128,7 +128,7 @@ pub struct MeasuredMargins {
     pub by_response: WithDeviation,
     /// The same of the model at this position.
     pub model: Option<f64>,
-    /// Greatest sensitivity of the position loop, its speed loop closed.
+    /// Maximum sensitivity of the position loop, its speed loop closed.
     pub position: f64,
     /// Least phase margin of all crossings of gain 1, degrees, cut at the command.
     pub phase_deg: Option<f64>,
@@ -353,12 +353,12 @@ fn margins(
         let Some(passed) = at.passed(line.frequency_hz) else {
             continue;
         };
-        let size = line.value.norm() / passed;
+        let magnitude = line.value.norm() / passed;
         let deviation = line.deviation / passed;
         // The greatest of many noisy lines is too high: one that is uncertain says nothing.
-        if deviation < CERTAIN * size && size > peak.value {
+        if deviation < CERTAIN * magnitude && magnitude > peak.value {
             peak = WithDeviation {
-                value: size,
+                value: magnitude,
                 deviation,
             };
             frequency = line.frequency_hz;

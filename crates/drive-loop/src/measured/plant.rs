@@ -57,6 +57,12 @@ impl MeasuredPlant {
         responses: [Option<&FrequencyResponse>; 3],
         coherence: f64,
     ) -> Self {
+        // Where the speed that counts is derived from the load's position, the motor's says nothing.
+        let [angle, speed, load] = responses;
+        let responses = match at.model.is_pid && at.model.sensing.motor_from_load {
+            true => [None, None, load],
+            false => [angle, speed, load],
+        };
         let main = if responses[1].is_some() {
             1
         } else if responses[0].is_some() {
@@ -140,7 +146,7 @@ impl MeasuredPlant {
         })
     }
 
-    /// At an angular frequency (rad/s) between its lines: straight in phase and logarithm of the size.
+    /// At an angular frequency (rad/s) between its lines: straight in phase and logarithm of the magnitude.
     pub(crate) fn at(&self, frequency: f64) -> Option<[Number; 3]> {
         let hz = frequency / TAU;
         let above = self.lines.partition_point(|line| line.frequency_hz < hz);

@@ -23,7 +23,7 @@ const TURNED: f64 = 1e-3;
 const LIMITED: f64 = 0.01;
 /// Frequency to which moves without excitation are good, Hz.
 const MOVES: f64 = 10.0;
-/// Distance of two values of the greatest sensitivity that counts.
+/// Distance of two values of the maximum sensitivity that counts.
 const APART: f64 = 0.08;
 /// Lines below the first antiresonance that are needed.
 const LINES: f64 = 40.0;
@@ -70,7 +70,7 @@ pub(crate) fn traps(
     Ok(all)
 }
 
-/// Two ways to the greatest sensitivity that differ.
+/// Two ways to the maximum sensitivity that differ.
 fn differing(margins: Option<&MeasuredMargins>, add: &mut impl FnMut(bool, String)) {
     let Some(m) = margins else {
         return;
@@ -81,7 +81,7 @@ fn differing(margins: Option<&MeasuredMargins>, add: &mut impl FnMut(bool, Strin
         add(
             false,
             format!(
-                "the greatest sensitivity is {:.2} from the command and {:.2} from the responses: lines too coarse, something at a limit, or a controller on the machine that is not that of the axis file",
+                "the maximum sensitivity is {:.2} from the command and {:.2} from the responses: lines too coarse, something at a limit, or a controller on the machine that is not that of the axis file",
                 m.sensitivity.value, m.by_response.value
             ),
         );

@@ -4,8 +4,8 @@
 use axis_fmu::UnitError;
 use safer_ffi::prelude::*;
 
-use super::{ComponentAt, of};
 use crate::call::{Address, call};
+use crate::component::{ComponentAt, of};
 
 /// Never looked at.
 type Count = usize;

@@ -2,9 +2,9 @@
 
 use safer_ffi::prelude::*;
 
-use super::component::{Callbacks, Made};
-use super::{Bool, ComponentAt, of};
+use super::Bool;
 use crate::call::{Address, Status, call, caught, text};
+use crate::component::{Callbacks, ComponentAt, Made, of};
 use crate::instance::{Instance, unit};
 use crate::log::{Log, To, c_text};
 use crate::resource_path::resource_path;

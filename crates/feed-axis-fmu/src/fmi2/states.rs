@@ -2,9 +2,10 @@
 
 use safer_ffi::prelude::*;
 
-use super::{ComponentAt, of};
 use crate::call::call;
-use crate::instance::{BytesIn, BytesOut, State, StateAt};
+use crate::component::{ComponentAt, of};
+use crate::instance::{State, StateAt};
+use crate::state_bytes::{read, write};
 
 /// `fmi2GetFMUstate`: into the state that is there, or a new one.
 #[ffi_export(rename = "fmi2GetFMUstate")]
@@ -48,21 +49,19 @@ pub fn serialized_fmu_state_size(
 pub fn serialize_fmu_state(
     component: ComponentAt<'_>,
     state: Option<&State>,
-    bytes: BytesOut<'_>,
+    bytes: *mut u8,
+    size: usize,
 ) -> i32 {
-    call(of(component), "fmi2SerializeFMUstate", |_| {
-        State::write(state, bytes)
-    })
+    write(component, "fmi2SerializeFMUstate", state, (bytes, size))
 }
 
 /// `fmi2DeSerializeFMUstate`: simulates again what led to the state.
 #[ffi_export(rename = "fmi2DeSerializeFMUstate")]
 pub fn deserialize_fmu_state(
     component: ComponentAt<'_>,
-    bytes: BytesIn<'_>,
+    bytes: *const u8,
+    size: usize,
     state: StateAt<'_>,
 ) -> i32 {
-    call(of(component), "fmi2DeSerializeFMUstate", |instance| {
-        instance.read(bytes, state)
-    })
+    read(component, "fmi2DeSerializeFMUstate", (bytes, size), state)
 }

@@ -3,9 +3,9 @@
 use axis_fmu::{FmiMode, UnitError};
 use safer_ffi::prelude::*;
 
-use super::component::Component;
-use super::{Bool, ComponentAt, of};
+use super::Bool;
 use crate::call::{Address, Status, call};
+use crate::component::{Component, ComponentAt, of};
 
 // Of `fmi2StatusKind`.
 const DO_STEP_STATUS: i32 = 0;

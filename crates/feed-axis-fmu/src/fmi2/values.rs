@@ -1,26 +1,9 @@
 //! Values of variables: all are `Real`.
 
-use axis_fmu::{Unit, UnitError};
 use safer_ffi::prelude::*;
 
-use super::{ComponentAt, of};
-use crate::call::call;
-
-/// Does `work` for each of `count` variables, if there are arrays of them.
-fn each(
-    component: ComponentAt<'_>,
-    name: &str,
-    count: usize,
-    is_there: bool,
-    mut work: impl FnMut(&mut Unit, usize) -> Result<(), UnitError>,
-) -> i32 {
-    call(of(component), name, |instance| {
-        if count > 0 && !is_there {
-            return Err(UnitError::Null("array"));
-        }
-        (0..count).try_for_each(|i| work(&mut instance.unit, i))
-    })
-}
+use crate::component::ComponentAt;
+use crate::values::{get, set};
 
 /// `fmi2GetReal`.
 #[ffi_export(rename = "fmi2GetReal")]
@@ -30,14 +13,8 @@ pub fn get_real(
     count: usize,
     values: *mut f64,
 ) -> i32 {
-    let Some(access) = component.as_ref().map(|component| component.access) else {
-        return call(None, "fmi2GetReal", |_| Ok(()));
-    };
-    let is_there = !references.is_null() && !values.is_null();
-    each(component, "fmi2GetReal", count, is_there, |unit, i| {
-        access.put(values, i, unit.get(access.reference(references, i))?);
-        Ok(())
-    })
+    let (references, values) = ((references, count), (values, count));
+    get(component, "fmi2GetReal", references, values)
 }
 
 /// `fmi2SetReal`, up to the first that is refused.
@@ -48,11 +25,6 @@ pub fn set_real(
     count: usize,
     values: *const f64,
 ) -> i32 {
-    let Some(access) = component.as_ref().map(|component| component.access) else {
-        return call(None, "fmi2SetReal", |_| Ok(()));
-    };
-    let is_there = !references.is_null() && !values.is_null();
-    each(component, "fmi2SetReal", count, is_there, |unit, i| {
-        unit.set(access.reference(references, i), access.number(values, i))
-    })
+    let (references, values) = ((references, count), (values, count));
+    set(component, "fmi2SetReal", references, values)
 }

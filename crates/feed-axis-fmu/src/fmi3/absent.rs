@@ -6,13 +6,15 @@ use safer_ffi::prelude::*;
 
 use super::Bool;
 use crate::call::{Address, call};
-use crate::instance::Instance;
+use crate::component::{ComponentAt, of};
 
 /// Never looked at.
 type Count = usize;
 
-fn refused(instance: Option<&mut Instance>, name: &str, why: &str) -> i32 {
-    call(instance, name, |_| Err(UnitError::Absent(why.to_owned())))
+fn refused(instance: ComponentAt<'_>, name: &str, why: &str) -> i32 {
+    call(of(instance), name, |_| {
+        Err(UnitError::Absent(why.to_owned()))
+    })
 }
 
 /// Functions that are refused whatever they are given.
@@ -20,7 +22,7 @@ macro_rules! absent {
     ($($why:literal { $($name:tt $function:ident($($argument:ident: $type:ty),*);)+ })+) => {$($(
         #[doc = concat!("`", $name, "`: ", $why, ".")]
         #[ffi_export(rename = $name)]
-        pub fn $function(instance: Option<&mut Instance>, $($argument: $type),*) -> i32 {
+        pub fn $function(instance: ComponentAt<'_>, $($argument: $type),*) -> i32 {
             let _ = ($($argument,)*);
             refused(instance, $name, $why)
         }
@@ -33,14 +35,14 @@ macro_rules! other_types {
         #[doc = concat!("`", $name, "`: all variables are of type Float64.")]
         #[ffi_export(rename = $name)]
         pub fn $function(
-            instance: Option<&mut Instance>,
+            instance: ComponentAt<'_>,
             _references: Address,
             count: Count,
             $($argument: $type),*
         ) -> i32 {
             let _ = ($($argument,)*);
             match count {
-                0 => call(instance, $name, |_| Ok(())),
+                0 => call(of(instance), $name, |_| Ok(())),
                 _ => refused(instance, $name, "all variables are of type Float64"),
             }
         }

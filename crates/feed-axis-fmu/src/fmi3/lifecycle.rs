@@ -4,6 +4,7 @@ use safer_ffi::prelude::*;
 
 use super::Bool;
 use crate::call::{Address, Status, call, caught, text};
+use crate::component::{ComponentAt, Made, of};
 use crate::instance::{Instance, unit};
 use crate::log::{Log, LogMessage, To};
 
@@ -23,12 +24,12 @@ pub fn get_version() -> char_p::Ref<'static> {
 /// `fmi3SetDebugLogging`: of the one category, or of all.
 #[ffi_export(rename = "fmi3SetDebugLogging")]
 pub fn set_debug_logging(
-    instance: Option<&mut Instance>,
+    instance: ComponentAt<'_>,
     on: Bool,
     _count: usize,
     _categories: Address,
 ) -> i32 {
-    call(instance, "fmi3SetDebugLogging", |instance| {
+    call(of(instance), "fmi3SetDebugLogging", |instance| {
         instance.log.on = on != 0;
         Ok(())
     })
@@ -50,14 +51,14 @@ pub fn instantiate_co_simulation(
     environment: Address,
     message: Option<LogMessage>,
     _intermediate_update: Address,
-) -> Option<repr_c::Box<Instance>> {
+) -> Option<repr_c::Box<Made>> {
     let log = log(environment, message);
     let made = caught(|| match event_mode_used {
         0 => unit(&text(token), &text(resources)),
         _ => Err("there is no event mode (hasEventMode is false)".to_owned()),
     });
     match made.and_then(|made| made) {
-        Ok(unit) => Some(Box::new(Instance { unit, log }).into()),
+        Ok(unit) => Some(Made::of(Instance { unit, log })),
         Err(why) => {
             log.tell(
                 Status::Error,
@@ -78,7 +79,7 @@ pub fn instantiate_model_exchange(
     _logging_on: Bool,
     environment: Address,
     message: Option<LogMessage>,
-) -> Option<repr_c::Box<Instance>> {
+) -> Option<repr_c::Box<Made>> {
     only_co_simulation("fmi3InstantiateModelExchange", environment, message)
 }
 
@@ -95,7 +96,7 @@ pub fn instantiate_scheduled_execution(
     _clock_update: Address,
     _lock_preemption: Address,
     _unlock_preemption: Address,
-) -> Option<repr_c::Box<Instance>> {
+) -> Option<repr_c::Box<Made>> {
     only_co_simulation("fmi3InstantiateScheduledExecution", environment, message)
 }
 
@@ -103,7 +104,7 @@ fn only_co_simulation(
     name: &str,
     environment: Address,
     message: Option<LogMessage>,
-) -> Option<repr_c::Box<Instance>> {
+) -> Option<repr_c::Box<Made>> {
     let log = log(environment, message);
     log.tell(
         Status::Error,
@@ -114,7 +115,7 @@ fn only_co_simulation(
 
 /// `fmi3FreeInstance`.
 #[ffi_export(rename = "fmi3FreeInstance")]
-pub fn free_instance(instance: Option<repr_c::Box<Instance>>) {
+pub fn free_instance(instance: Option<repr_c::Box<Made>>) {
     // Nobody is left to be told of what goes wrong.
     let _ = caught(|| drop(instance));
 }
@@ -122,7 +123,7 @@ pub fn free_instance(instance: Option<repr_c::Box<Instance>>) {
 /// `fmi3EnterInitializationMode`.
 #[ffi_export(rename = "fmi3EnterInitializationMode")]
 pub fn enter_initialization_mode(
-    instance: Option<&mut Instance>,
+    instance: ComponentAt<'_>,
     _tolerance_defined: Bool,
     _tolerance: f64,
     start_time: f64,
@@ -130,31 +131,31 @@ pub fn enter_initialization_mode(
     stop_time: f64,
 ) -> i32 {
     let stop = (stop_time_defined != 0).then_some(stop_time);
-    call(instance, "fmi3EnterInitializationMode", |instance| {
+    call(of(instance), "fmi3EnterInitializationMode", |instance| {
         instance.unit.enter_initialization(start_time, stop)
     })
 }
 
 /// `fmi3ExitInitializationMode`.
 #[ffi_export(rename = "fmi3ExitInitializationMode")]
-pub fn exit_initialization_mode(instance: Option<&mut Instance>) -> i32 {
-    call(instance, "fmi3ExitInitializationMode", |instance| {
+pub fn exit_initialization_mode(instance: ComponentAt<'_>) -> i32 {
+    call(of(instance), "fmi3ExitInitializationMode", |instance| {
         instance.unit.exit_initialization()
     })
 }
 
 /// `fmi3Terminate`.
 #[ffi_export(rename = "fmi3Terminate")]
-pub fn terminate(instance: Option<&mut Instance>) -> i32 {
-    call(instance, "fmi3Terminate", |instance| {
+pub fn terminate(instance: ComponentAt<'_>) -> i32 {
+    call(of(instance), "fmi3Terminate", |instance| {
         instance.unit.terminate()
     })
 }
 
 /// `fmi3Reset`.
 #[ffi_export(rename = "fmi3Reset")]
-pub fn reset(instance: Option<&mut Instance>) -> i32 {
-    call(instance, "fmi3Reset", |instance| {
+pub fn reset(instance: ComponentAt<'_>) -> i32 {
+    call(of(instance), "fmi3Reset", |instance| {
         instance.unit.reset();
         Ok(())
     })
@@ -163,7 +164,7 @@ pub fn reset(instance: Option<&mut Instance>) -> i32 {
 /// `fmi3DoStep`. The time that was reached is told also where the step failed.
 #[ffi_export(rename = "fmi3DoStep")]
 pub fn do_step(
-    instance: Option<&mut Instance>,
+    instance: ComponentAt<'_>,
     point: f64,
     step: f64,
     _no_set_state_prior: Bool,
@@ -176,7 +177,7 @@ pub fn do_step(
     for flag in flags.into_iter().flatten() {
         *flag = 0;
     }
-    call(instance, "fmi3DoStep", |instance| {
+    call(of(instance), "fmi3DoStep", |instance| {
         let done = instance.unit.step(point, step);
         if let Some(time) = last_successful_time {
             *time = instance.unit.time();

@@ -16,7 +16,9 @@ __all__ = [
     "Axis",
     "AxisError",
     "Beam",
+    "CirclesFound",
     "Compensator",
+    "Contour",
     "Correction",
     "Discovery",
     "Effect",
@@ -24,6 +26,8 @@ __all__ = [
     "LogError",
     "LoopError",
     "LuGre",
+    "Machine",
+    "MachineError",
     "MotionError",
     "Move",
     "MoveCorrection",
@@ -39,10 +43,12 @@ __all__ = [
     "SearchError",
     "SimulationError",
     "StrategyError",
+    "Toolpath",
     "TransferFunctions",
     "__version__",
     "discover",
     "examples",
+    "fit_circles",
     "identify",
     "identify_control",
     "latin_hypercube",
@@ -76,6 +82,11 @@ class _Frame(Protocol):
     def columns(self) -> Iterable[Any]: ...
     def __getitem__(self, name: Any, /) -> Any: ...
 
+# A path, points in rows (m), or the text of a program in G-code.
+_Toolpath: TypeAlias = Toolpath | str | Sequence[Sequence[float]] | NDArray[Any]
+# A value and its standard error.
+_Estimate: TypeAlias = tuple[float, float]
+
 _Log: TypeAlias = _Path | Run | _Frame | Mapping[str, ArrayLike]
 
 class FeedAxisError(ValueError):
@@ -90,6 +101,8 @@ class LogError(FeedAxisError):
     """A log of which no conclusion would be worth anything, or a channel that is not there."""
 class LoopError(FeedAxisError):
     """Loops that cannot be analysed or tuned, or not as it was asked for."""
+class MachineError(FeedAxisError):
+    """A machine file, or axes in its place, that make no machine, or none for a path."""
 class MotionError(FeedAxisError):
     """A motion that cannot be planned, or not on this axis."""
 class NetworkError(FeedAxisError):
@@ -183,7 +196,7 @@ class Axis:
         - `frictions`: as shares of the file's; 1, if left out.
         - `delay_cycles`: delay besides the file's, control cycles.
 
-        Its keys are those of `feed-axis analyse --format json`: `worst` has the greatest sensitivities, `corners` the margins of each case,
+        Its keys are those of `feed-axis analyse --format json`: `worst` has the maximum sensitivities, `corners` the margins of each case,
         `curves` the frequency responses of the first two cases: `frequency_hz`, and pairs of real and imaginary part in `open_command`,
         `open_position`, `speed_followed` and `compliance` (the load's motion per force on it).
 
@@ -301,7 +314,7 @@ class Axis:
 
         `position` and `stuck` as of `state_space`; `delay_cycles`: delay besides the file's, control cycles. Keys: `open_command` (the loop cut at
         the command), `open_position` (the position loop, its speed loop closed), `speed_followed` (the motor's speed per set point of the speed
-        controller), `compliance` (the load's motion per force on it, m/N or rad/(N·m)). They are those of `analyse`.
+        controller; empty of a PID controller), `compliance` (the load's motion per force on it, m/N or rad/(N·m)). They are those of `analyse`.
 
         Raises LoopError.
 
@@ -320,22 +333,51 @@ class Axis:
         acceleration: bool = True,
         notch: bool = True,
         current: bool = False,
+        frf: _Log | Sequence[_Log] | None = None,
     ) -> tuple[Axis, dict[str, Any]]:
         """Gains of the loops that hold the load best within limits of the sensitivity: the axis that has them, and what was found.
 
-        - `sensitivity`: greatest sensitivity at the command and at the position, in every case.
+        - `sensitivity`: maximum sensitivity at the command and at the position, in every case.
         - `sensitivity_late`: the same with one more cycle of delay.
         - `ripple`: greatest ripple of the command by the steps of the speed's sensor, as a share of the greatest command (RMS).
         - `positions`, `masses`, `frictions`: the cases, as of `analyse`.
         - `acceleration`: whether the acceleration is fed forward; `notch`: whether a notch may be set; `current`: whether the current
           controllers are set too.
+        - `frf`: a log or a list of logs of the excited axis, as of `frf`: the limits hold for the loops with the measured responses too,
+          and the delay that they show is in the model's.
 
         What was found has the keys of `feed-axis tune --format json`: `keys` has the keys of the axis file that were set, `limiting` what
         limits the gains, `helps` what would help, `moves` the moves of the file simulated before and after.
 
-        Raises LoopError.
+        Raises LoopError, also for a measured response that must not be tuned on; LogError.
 
         >>> tuned, found = axis.tune(sensitivity=1.5)
+        """
+    def frf(
+        self,
+        logs: _Log | Sequence[_Log],
+        *,
+        columns: _Columns = ...,
+        step_hz: float | None = None,
+        coherence: float = 0.9,
+        poles: _Whole = 10,
+    ) -> list[dict[str, Any]]:
+        """Frequency responses estimated from logs of the excited axis: a dict for each log.
+
+        - `logs`: a log or a list of logs, one for each place of the load, with position, command and excitation (`excitation_a`,
+          `excitation_n_m`, `excitation_n` or `drive_command_added_v`), every control cycle.
+        - `columns`: channels of columns with other names, as of `discover`.
+        - `step_hz`: distance of two lines; those of a periodic excitation, or 1.2 Hz, if left out.
+        - `coherence`: least coherence of a line that counts. `poles`: most poles of the fit; a mode has two.
+
+        Keys are those of an item of `measurements` of `feed-axis frf --format json`: `motor_speed` and `load` have the lines (`frequency_hz`,
+        `value` as real and imaginary part, `deviation`, `coherence`), `fit` the modes, `margins` those with the gains of the file, `comparison`
+        what differs from the model, `traps` what is wrong with the measurement.
+
+        Raises LoopError if no response can be estimated; LogError.
+
+        >>> found = axis.frf("slide.parquet")[0]
+        >>> delay_s = found["comparison"]["delay_s"]["value"]
         """
     def simulate(
         self,
@@ -345,6 +387,7 @@ class Axis:
         noise: float = 0.0,
         exact: bool = False,
         seed: _Whole = 1,
+        excitation: ArrayLike | None = None,
         progress: _Progress | None = None,
     ) -> Run:
         """Follows a motion in closed loop.
@@ -356,6 +399,8 @@ class Axis:
         - `noise`: noise of every sensor beside the axis file's own, in multiples of good sensors' noise, 0 or above.
         - `exact`: simulate by the slow, exact method, to stand for a machine.
         - `seed`: of the noise; the same seed gives the same bits.
+        - `excitation`: numbers that are added to the command behind the controller, one for each control cycle from the first on, in the
+          unit of the command; zeros if there are fewer. The run has them as a channel, such as `excitation_a`.
         - `progress`: called with (what, done, total) on this thread, at most every 50 ms; what it raises ends the work.
 
         Raises MotionError if the axis cannot take the motion, SimulationError if the run does not come to its end, ValueError for a noise below 0.
@@ -611,6 +656,272 @@ class Run:
         """
     def _repr_html_(self) -> str: ...
     def __eq__(self, other: object, /) -> bool: ...
+
+@final
+class Toolpath:
+    """A path of two or three axes, in m.
+
+    Points, a program, or one of the paths below. A path begins where the axes' motions begin.
+
+    >>> path = fa.Toolpath.circle(0.05)
+    >>> path = fa.Toolpath.gcode("G21 G90\\nF3000\\nG1 X20\\nG3 X30 Y10 I0 J10")
+    """
+
+    @staticmethod
+    def circle(radius_m: float, *, tilt_rad: float | None = None) -> Toolpath:
+        """A circular test about the origin, run in both directions: half a turn in, one that counts, half a turn out. Tilted about X it needs
+        three axes.
+
+        Raises MotionError for a radius that is not above 0.
+        """
+    @staticmethod
+    def butterfly() -> Toolpath:
+        """The butterfly: a NURBS curve of 383 mm with tips of 0.02 mm radius, on which feed planners are compared."""
+    @staticmethod
+    def nurbs(points_m: ArrayLike, knots: ArrayLike, *, degree: int = 3, weights: ArrayLike | None = None) -> Toolpath:
+        """A NURBS curve: control points in rows of 2 or 3 coordinates (m), as many knots as points plus degree plus 1; weights of 1 if left out.
+
+        Raises MotionError for numbers that are no curve.
+        """
+    @staticmethod
+    def points(
+        points_m: ArrayLike, *, blend_m: float | None = None, blend_shape: Literal["quintic", "arc", "parabola"] = "quintic"
+    ) -> Toolpath:
+        """Straight lines through points, a row of 2 or 3 coordinates (m) each. The feed stops at every corner, unless `blend_m` blends it within
+        this distance; at the ends of an arc or a parabola it stops too, unless `acceleration_step` allows a step.
+
+        Raises MotionError for fewer than two points, or two alike that follow one another.
+        """
+    @staticmethod
+    def gcode(
+        text: str, *, blend_m: float | None = None, blend_shape: Literal["quintic", "arc", "parabola"] = "quintic"
+    ) -> Toolpath:
+        """A program in G-code (G0 to G3), from its text; it begins at the origin. `blend_m` is the tolerance before the first G61 or G64 P,
+        `blend_shape` that of all blends.
+
+        Raises MotionError with the line, and what would be valid.
+        """
+    @classmethod
+    def load(
+        cls, path: _Path, *, blend_m: float | None = None, blend_shape: Literal["quintic", "arc", "parabola"] = "quintic"
+    ) -> Toolpath:
+        """A program in G-code, from a file; blends as in `gcode`.
+
+        Raises MotionError as `gcode`, FileNotFoundError or another OSError if the file cannot be read.
+        """
+    @property
+    def name(self) -> str:
+        """What it is called."""
+    @property
+    def length_m(self) -> float:
+        """Length, m; of a program that of all its parts, of a circular test that of one turn."""
+    def positions(self, count: int = 1000) -> _Floats:
+        """Positions at even steps of the arc length, shape (count, 2 or 3), m; of a circular test one turn.
+
+        Raises MotionError for fewer than two.
+        """
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+
+@final
+class Machine:
+    """Two or three axes that carry a tool along a path, and what lies between them.
+
+    >>> machine = fa.Machine("data/machines/liu2025-xy.toml")
+    >>> machine = fa.Machine([fa.new("linear-motor", "x"), fa.new("belt", "y")])
+    """
+
+    def __new__(
+        cls,
+        axes: _Path | Sequence[Axis] | Mapping[str, Axis],
+        *,
+        name: str | None = None,
+        coupling: Sequence[Mapping[str, Any]] | None = None,
+        base: Sequence[Mapping[str, Any]] | None = None,
+        gantry: Sequence[Mapping[str, Any]] | None = None,
+    ) -> Machine:
+        """Of a machine file, or of two or three axes in their order, or by "x", "y" and "z". `coupling`, `base` and `gantry` have the keys of
+        the tables of a machine file; the "second" of a gantry is an Axis.
+
+        Raises MachineError for what is no machine, AxisError for an axis file, FileNotFoundError or another OSError if a file cannot be read.
+
+        >>> machine = fa.Machine([x, y], coupling=[{"of": "x", "by": "y", "squareness_um_per_m": 20}])
+        """
+    @classmethod
+    def load(cls, path: _Path) -> Machine:
+        """Reads a machine file.
+
+        Raises as the constructor.
+        """
+    @property
+    def name(self) -> str:
+        """Short name."""
+    @property
+    def axes(self) -> list[Axis]:
+        """The axes of x, y and, of three, z."""
+    @property
+    def drives(self) -> list[Axis]:
+        """The drives in the order of their compensations: of each axis its own, then the second of a gantry."""
+    def contour(
+        self,
+        path: _Toolpath,
+        *,
+        feed: float = 0.05,
+        compensation: str | Sequence[Compensator] | None = None,
+        laps: int = 1,
+        correct: bool | CirclesFound | None = None,
+        feeds: ArrayLike | None = None,
+        acceleration: float = 1.0,
+        jerk: float = 20.0,
+        acceleration_step: float = 0.0,
+        rapid: float = 0.25,
+        noise: float = 0.0,
+        seed: int = 1,
+        progress: _Progress | None = None,
+    ) -> Contour:
+        """Runs the machine along a path; of a circle in both directions.
+
+        `feed` is along the path, m/s; of a program before its first F. `acceleration` (m/s²) and `jerk` (m/s³) limit each axis;
+        `acceleration_step` (m/s²) is allowed where the curvature jumps, with 0 the feed stops there; `rapid` is the feed of G0, m/s.
+        `compensation` is the name of a strategy that needs nothing else (`STRATEGIES`), or a Compensator for each of `drives`. One that learns
+        goes on from lap to lap. `correct=True` takes squareness, straightness and cross-talk of the machine file off the references; what
+        `identify` found may be given instead. `feeds` (m/s) makes a table of feed against error. `noise` is that of the sensors in multiples of
+        good ones. `progress("laps", done, total)`.
+
+        Raises MotionError for a path or limits, StrategyError for a compensation, MachineError if the path has more coordinates than
+        the machine has axes, SimulationError if an axis stops.
+
+        >>> contour = machine.contour(fa.Toolpath.circle(0.05), compensation="adaptive-feedback", laps=2, noise=1)
+        """
+    def identify(
+        self,
+        feeds: ArrayLike,
+        *,
+        radius: float = 0.05,
+        compensation: str | Sequence[Compensator] | None = None,
+        acceleration: float = 1.0,
+        jerk: float = 20.0,
+        noise: float = 0.0,
+        seed: int = 1,
+        progress: _Progress | None = None,
+    ) -> CirclesFound:
+        """Squareness and cross-talk of X and Y from simulated circular tests at several feeds (m/s), in both directions.
+
+        Raises SearchError if the circles do not tell them apart, as at one feed; else as `contour`.
+
+        >>> found = machine.identify([0.05, 0.167], compensation="plan", noise=1)
+        >>> better = machine.contour(fa.Toolpath.circle(0.05), compensation="plan", correct=found)
+        """
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+
+@final
+class Contour:
+    """A machine on a path: figures of all laps, and the last lap as arrays by direction.
+
+    Directions are "clockwise" and "counterclockwise" of a circle, one of another path.
+
+    >>> contour["clockwise"]["error_m"]
+    """
+
+    def __getitem__(self, direction: str, /) -> dict[str, _Floats]:
+        """The counted part of the last lap in one direction, an array each: "s_m" (arc length), "error_m" (distance from the path), "x_m", "y_m"
+        and, in space, "z_m" of the tool, "foot_x_m" and so on of the nearest point of the path; of a circle also "angle_rad" (from +X towards +Y, in its
+        plane, 0 to 2 pi) and "deviation_m" (radial).
+
+        Raises KeyError with the directions.
+        """
+    def __contains__(self, direction: str, /) -> bool:
+        """Whether there is a direction of that name."""
+    def __len__(self) -> int:
+        """Number of directions."""
+    def __iter__(self) -> Iterator[str]:
+        """The directions."""
+    def keys(self) -> list[str]:
+        """The directions."""
+    @property
+    def max_error(self) -> float:
+        """Greatest contour error of the last lap, m."""
+    @property
+    def laps(self) -> list[dict[str, Any]]:
+        """Contour error of every lap: "direction", "lap" (from 1), "max_error_m", "p99_error_m" (99 % are below), "rms_error_m"."""
+    @property
+    def figures(self) -> dict[str, Any] | None:
+        """Figures of a circular test in the manner of ISO 230-4, last lap: "clockwise" and "counterclockwise", each with "g_m" (circular
+        deviation G), "f_max_m" and "f_min_m" (radial deviation F); of both "g_bidirectional_m" (G(b)), "h_m" (circular hysteresis H) and "d_m"
+        (mean bidirectional radial deviation D). None of another path."""
+    @property
+    def reversals(self) -> list[dict[str, Any]]:
+        """Peaks of the radial deviation after an axis of a circle has reversed, last lap: "direction", "axis", "angle_rad", "peak_m"."""
+    @property
+    def corners(self) -> list[dict[str, Any]]:
+        """Corners, last lap: "part", "s_m", "angle_rad", "error_m" (greatest within 0.5 mm)."""
+    @property
+    def curves(self) -> list[dict[str, Any]]:
+        """Tightest curves, last lap: "part", "s_m", "radius_m", "error_m" (greatest within 0.5 mm)."""
+    @property
+    def feeds(self) -> list[dict[str, Any]]:
+        """Feed against error: "feed_m_s", "fastest_m_s" (reached), "duration_s", "first_max_error_m", "last_max_error_m" (first, last lap)."""
+    @property
+    def duration_s(self) -> float:
+        """Time of one lap in one direction, run-in and run-out included, s."""
+    @property
+    def radius_m(self) -> float | None:
+        """Radius of a circular test, m; None of another path."""
+    def to_pandas(self) -> pd.DataFrame:
+        """The last lap of all directions as a pandas DataFrame: "direction" and the arrays. Needs pandas; ImportError without."""
+    def to_polars(self) -> pl.DataFrame:
+        """The last lap of all directions as a polars DataFrame. Needs polars; ImportError without."""
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draws the last lap with matplotlib, into `ax` or a new figure: of a circle the radial deviation over the angle (`ax` may be polar), else
+        the contour error along the path. Needs matplotlib; ImportError without."""
+    def to_html(self, path: _Path | None = None) -> str:
+        """The page that `contour --report` writes, as text; written to `path` too if given.
+
+        Raises OSError if the file cannot be written.
+        """
+    def _repr_html_(self) -> str: ...
+    def __eq__(self, other: object, /) -> bool: ...
+
+@final
+class CirclesFound:
+    """What circular tests show of two axes: each value with its standard error, as if the residuals were independent."""
+
+    @property
+    def squareness(self) -> _Estimate:
+        """Squareness error of both axes, rad (m/m): X moves so far per travel of Y."""
+    @property
+    def crosstalk(self) -> _Estimate:
+        """Cross-talk, m/(m/s²): of X by the acceleration of Y and of Y by that of X together."""
+    @property
+    def centre(self) -> tuple[_Estimate, _Estimate]:
+        """Centre less the nominal one, m."""
+    @property
+    def radius(self) -> _Estimate:
+        """Radius less the nominal one, m."""
+    @property
+    def lag(self) -> _Estimate | None:
+        """Lag of Y less that of X, s; None if all circles had one direction."""
+    @property
+    def residual(self) -> float:
+        """Root mean square of the radial residuals, m."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+
+def fit_circles(
+    circles: Sequence[tuple[float, Literal["clockwise", "counterclockwise"], ArrayLike]],
+    *,
+    radius: ArrayLike,
+    centre: tuple[float, float] | None = None,
+) -> CirclesFound:
+    """Squareness and cross-talk of two axes from measured circles, as of a ball bar or a grid encoder: feed (m/s), direction and points (m, in rows
+    of x and y, evenly over the turn) of each. `radius` is the nominal one (m), or one for each circle; `centre` the
+    nominal one (m), the origin if left out.
+
+    Raises SearchError if the circles do not tell them apart, as at one feed.
+
+    >>> found = fa.fit_circles([(0.05, "clockwise", slow), (0.167, "clockwise", fast)], radius=0.05)
+    """
 
 @final
 class Parameter:

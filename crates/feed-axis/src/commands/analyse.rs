@@ -99,7 +99,7 @@ fn words(found: &LoopAnalysis) -> String {
     let worst = &found.worst;
     let _ = writeln!(
         text,
-        "greatest sensitivity of {} corners: {}; with one more cycle of delay: {}",
+        "maximum sensitivity of {} corners: {}; with one more cycle of delay: {}",
         found.corners.len(),
         of_corner(found, worst.sensitivity, worst.sensitivity_corner),
         of_corner(found, worst.sensitivity_late, worst.sensitivity_late_corner),

@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use axis_log::fixed;
 use axis_pipeline::measured::Errors;
 use axis_pipeline::moves::{MoveRun, Moves, NamedMotion};
 use axis_pipeline::strategies::{LearnedValues, NONE, Predictors, StrategyKind};
@@ -258,13 +259,13 @@ impl fmt::Display for Moved<'_> {
             let (a, b) = (&entry.errors.none, &entry.errors.compensated);
             writeln!(
                 f,
-                "  {:>9.3} / {:<9.4} {:>9.4} / {:<9.5} {:>6.2} / {:.2} %   {}",
+                "  {:>9.3} / {:<9.4} {:>9.4} / {:<9.5} {:>6} / {} %   {}",
                 a.max,
                 a.mean,
                 b.max,
                 b.mean,
-                100.0 * (1.0 - b.max / a.max),
-                100.0 * (1.0 - b.mean / a.mean),
+                fixed(100.0 * (1.0 - b.max / a.max), 2),
+                fixed(100.0 * (1.0 - b.mean / a.mean), 2),
                 entry.name
             )?;
         }

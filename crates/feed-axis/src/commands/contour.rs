@@ -12,15 +12,18 @@ use axis_sim::{Axis, ClosedLoop, Measured};
 use clap::Args;
 use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result, WrapErr};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use toolpath::iso230_4::{
     CircleFigures, DirectionFigures, NominalCircle, figures, quadrant_glitches,
 };
 use toolpath::named::{CirclePath, CircleTest, Direction};
 use toolpath::{FeedLimits, FeedProfile};
 
-use super::contour_laps::{self, LapOptions, Run};
-use super::contour_paths::{PathOptions, Wanted};
+use super::contour_drives::ContourError;
+use super::contour_laps::{self, ReferenceCorrection, Run};
+use super::contour_paths::{LapOptions, PathOptions};
+use super::contour_results::ResultFolders;
+use super::contour_route::Wanted;
 use super::simulate::{NOISE, factor};
 use crate::context::read_axis;
 use crate::exit::wrong_use;
@@ -84,7 +87,7 @@ pub struct Options {
         allow_negative_numbers = true
     )]
     jerk: f64,
-    /// Compensation of both axes, of those that need nothing from other commands
+    /// Compensation of all axes; one that needs a network, transfer functions or friction takes them from --runs
     #[arg(long, value_parser = strategy_name(), default_value = "none")]
     compensation: &'static StrategyKind,
     #[arg(long, help = NOISE, value_name = "FACTOR", default_value_t = 0.0, value_parser = factor, allow_negative_numbers = true)]
@@ -102,17 +105,11 @@ pub const AFTER_REVERSAL: f64 = 0.35;
 
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
-    if let [need, ..] = options.compensation.needs {
-        return Err(wrong_use(format!(
-            "--compensation: {} needs {}; give one that needs nothing, such as plan, feedback or drive-terms",
-            options.compensation.label,
-            need.name()
-        )));
-    }
     let (Some(x), Some(y)) = (&options.x, &options.y) else {
         return on_machine(options);
     };
-    if options.laps.are_given() || options.path.are_given() {
+    let needs = !options.compensation.needs.is_empty();
+    if needs || options.laps.are_given() || options.path.are_given() {
         return on_machine(options);
     }
     let axes = [read(x, "--x")?, read(y, "--y")?];
@@ -148,7 +145,11 @@ pub fn command(options: &Options) -> Result<()> {
 fn on_machine(options: &Options) -> Result<()> {
     let file = match (&options.laps.machine, &options.x, &options.y) {
         (Some(file), ..) => MachineFile::read(file),
-        (_, Some(x), Some(y)) => Ok(MachineFile::of_axes(read(x, "--x")?, read(y, "--y")?)),
+        (_, Some(x), Some(y)) => {
+            let mut file = MachineFile::of_axes(read(x, "--x")?, read(y, "--y")?);
+            (file.text.axes.x, file.text.axes.y) = (x.clone(), y.clone());
+            Ok(file)
+        }
         _ => {
             return Err(wrong_use(
                 "give --machine FILE, or --x FILE and --y FILE".to_owned(),
@@ -159,27 +160,60 @@ fn on_machine(options: &Options) -> Result<()> {
         MachineFileError::Axis(error) => miette::Report::new(*error),
         other => miette::miette!("{other}"),
     })?;
+    let path = options.path.choice(1e-3 * options.radius)?;
+    let results = ResultFolders {
+        runs: &options.laps.runs,
+        quick: options.laps.quick,
+        makes: false,
+    };
+    let kind = options.compensation;
+    let compensation = results
+        .compensation(kind, &file)
+        .wrap_err("--compensation")?;
+    let networks = results.networks(kind, &file)?;
+    let per_s = |feeds: &[f64]| feeds.iter().map(|feed| feed / 60.0).collect();
     let run = Run {
         file: &file,
-        paths: &options.path,
-        laps: &options.laps,
-        wanted: Wanted {
-            radius: 1e-3 * options.radius,
+        path: &path,
+        laps: options.laps.laps,
+        wanted: options.path.wanted(Wanted {
             feed: options.feed / 60.0,
             acceleration: options.acceleration,
             jerk: options.jerk,
+            ..Wanted::default()
+        }),
+        identify: per_s(&options.laps.identify),
+        correct: match options.laps.correct {
+            true => ReferenceCorrection::FileOrFound,
+            false => ReferenceCorrection::Nothing,
         },
-        compensation: options.compensation,
+        feeds: per_s(&options.laps.feeds),
+        compensation,
         noise: options.noise,
         seed: options.seed,
+        each: &|| (),
     };
-    let found = contour_laps::run(&run)?.reported(options.report.as_deref());
-    if let Some(path) = &options.report {
-        let radius = options.path.is_circle().then_some(run.wanted.radius);
-        let page = laps_page::page(&found, radius);
-        axis_report::write_atomic(path, &page).into_diagnostic()?;
+    let found = contour_laps::run(&run).map_err(worded)?;
+    let mut found = found.reported(options.report.as_deref());
+    found.networks = networks;
+    if let Some(file) = &options.report {
+        let page = laps_page::page(&found, path.radius());
+        axis_report::write_atomic(file, &page).into_diagnostic()?;
     }
     print("contour", &found)
+}
+
+/// An error of a run, with the options that it is about.
+fn worded(error: ContourError) -> miette::Report {
+    match &error {
+        ContourError::NoCircle => wrong_use(
+            "--identify takes circles in the plane of X and Y; give --radius alone".to_owned(),
+        ),
+        ContourError::Circles(_) => miette::miette!("{error}").wrap_err("--identify"),
+        ContourError::Path(_) => miette::miette!("{error}")
+            .wrap_err("--feed, --acceleration, --jerk, --acceleration-step, --radius or --tilt"),
+        _ => miette::miette!("{error}"),
+    }
 }
 
 fn read(file: &Path, option: &str) -> Result<Axis> {
@@ -302,16 +336,16 @@ pub struct Turned {
 }
 
 /// The peak after a reversal.
-#[derive(Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Reversal {
-    pub axis: &'static str,
+    pub axis: String,
     /// Where the axis reverses, from +X towards +Y.
     pub angle_deg: f64,
     pub peak_um: f64,
 }
 
 /// Both directions together.
-#[derive(Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Both {
     /// Bidirectional circular deviation G(b).
     pub g_um: f64,
@@ -325,7 +359,7 @@ impl Reversal {
     /// Of a peak that was found.
     pub fn of(glitch: &toolpath::iso230_4::QuadrantGlitch) -> Self {
         Self {
-            axis: ["X", "Y"][glitch.axis.min(1)],
+            axis: ["X", "Y"][glitch.axis.min(1)].to_owned(),
             angle_deg: glitch.angle.to_degrees(),
             peak_um: 1e6 * glitch.peak,
         }

@@ -1,199 +1,197 @@
-//! `contour` on a machine: any path, laps, what lies between the axes, feed against error.
-
-use std::path::PathBuf;
+//! A machine on a path: laps, what lies between the axes, feed against error.
 
 use axis_machine::{
-    CirclesFound, CoupledMachine, Coupling, DriveSensors, Laps, MachineFile, MeasuredCircle,
-    fit_circles,
+    AxisCoupling, CirclesFound, CoupledMachine, Coupling, DriveSensors, Laps, MachineFile,
+    MeasuredCircle, fit_circles,
 };
-use axis_pipeline::strategies::{Predictors, StrategyKind};
 use axis_sim::Measured;
-use clap::Args;
 use discover_matrix::hidden::Noise;
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use rayon::prelude::*;
 use toolpath::iso230_4::{CircleFigures, NominalCircle, figures, quadrant_glitches};
 use toolpath::named::Direction;
 
 use super::contour::{AFTER_REVERSAL, Both, Reversal};
+use super::contour_drives::{ContourError, DriveCompensations};
 use super::contour_found::{
     Contoured, FeedRow, IdentifiedCoupling, LapFigures, MachineContoured, Shown,
 };
-use super::contour_paths::{Leg, PathOptions, Route, Wanted};
 use super::contour_places::places;
-use crate::exit::wrong_use;
-
-/// Options of machines and laps.
-#[derive(Args)]
-pub struct LapOptions {
-    /// Machine file: names the axis files and what lies between them (docs/two-axes.md)
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["x", "y"])]
-    pub machine: Option<PathBuf>,
-    /// Laps one after the other; a compensation that learns goes on from lap to lap
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100))]
-    pub laps: u32,
-    /// Find squareness and cross-talk from circles at these feeds, m/min: two at least
-    #[arg(long, value_name = "M_PER_MIN", num_args = 1.., value_delimiter = ',')]
-    pub identify: Vec<f64>,
-    /// Take squareness, straightness and cross-talk off the references: those of the machine file, or found by --identify
-    #[arg(long)]
-    pub correct: bool,
-    /// Further feeds for a table of feed against error, m/min
-    #[arg(long, value_name = "M_PER_MIN", num_args = 1.., value_delimiter = ',')]
-    pub feeds: Vec<f64>,
-}
-
-impl LapOptions {
-    /// Whether an option was given that circles of two axis files do not have.
-    pub fn are_given(&self) -> bool {
-        let lists = self.identify.len() + self.feeds.len();
-        self.machine.is_some() || self.laps > 1 || lists > 0 || self.correct
-    }
-}
+use super::contour_route::{Leg, PathChoice, Route, Wanted};
 
 /// What is run.
 pub struct Run<'a> {
+    /// The machine.
     pub file: &'a MachineFile,
-    pub paths: &'a PathOptions,
-    pub laps: &'a LapOptions,
+    /// The path.
+    pub path: &'a PathChoice,
+    /// Feed and limits.
     pub wanted: Wanted,
-    pub compensation: &'static StrategyKind,
+    /// Laps one after the other, from 1.
+    pub laps: u32,
+    /// Feeds of circles from which squareness and cross-talk are found, m/s; none to leave that.
+    pub identify: Vec<f64>,
+    /// What is taken off the references.
+    pub correct: ReferenceCorrection,
+    /// Further feeds for a table of feed against error, m/s.
+    pub feeds: Vec<f64>,
+    /// Compensation of the drives.
+    pub compensation: DriveCompensations,
+    /// Noise of the sensors, in multiples of good ones.
     pub noise: f64,
+    /// Seed of the noise.
     pub seed: u64,
+    /// Called after every lap, from any thread.
+    pub each: &'a (dyn Fn() + Sync),
 }
 
-/// Both senses of a circle, or the one of another path.
-fn senses(paths: &PathOptions) -> Vec<Direction> {
-    match paths.is_circle() {
-        true => vec![Direction::Clockwise, Direction::Counterclockwise],
-        false => vec![Direction::Counterclockwise],
+/// What is taken off the references.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ReferenceCorrection {
+    /// Nothing.
+    Nothing,
+    /// What the machine file says, or what was found from circles if some were asked for.
+    FileOrFound,
+    /// This.
+    Known(Coupling),
+}
+
+impl Run<'_> {
+    /// How often [`Run::each`] will be called: laps of all senses and feeds, a program's parts as one.
+    pub fn laps_in_all(&self) -> u64 {
+        let senses = self.path.senses().len() as u64;
+        let feeds = self.feeds.len() as u64 + 1;
+        senses * (u64::from(self.laps) * feeds + self.identify.len() as u64)
     }
 }
 
 /// Runs it all.
-pub fn run(run: &Run<'_>) -> Result<MachineContoured> {
-    let identified = match run.laps.identify.is_empty() {
+///
+/// # Errors
+/// [`ContourError`]: what was refused, and what would be valid.
+pub fn run(run: &Run<'_>) -> Result<MachineContoured, ContourError> {
+    let identified = match run.identify.is_empty() {
         true => None,
         false => Some(identify(run)?),
     };
-    let correction = match (run.laps.correct, &identified) {
-        (false, _) => None,
-        (true, Some(found)) => Some(coupling_of(found)?),
-        (true, None) => Some(run.file.coupling().into_diagnostic()?),
+    let correction = match (&run.correct, &identified) {
+        (ReferenceCorrection::Nothing, _) => None,
+        (ReferenceCorrection::Known(coupling), _) => Some(coupling.clone()),
+        (ReferenceCorrection::FileOrFound, Some(found)) => Some(coupling_of(found)?),
+        (ReferenceCorrection::FileOrFound, None) => Some(run.file.coupling()?),
     };
     let directions = at_feed(run, &run.wanted, correction.as_ref())?;
-    let both = match (run.paths.is_circle(), &directions[..]) {
-        (true, [there, back]) => {
-            let found = circle_figures(&run.wanted, [&there.shown, &back.shown])?;
-            Some(Both::of(&found))
-        }
+    let figures = match (run.path.radius(), &directions[..]) {
+        (Some(radius), [there, back]) => Some(circle_figures(radius, [&there.shown, &back.shown])?),
         _ => None,
     };
-    let feeds: Vec<FeedRow> = (run.laps.feeds.par_iter())
-        .map(|&feed| feed_row(run, feed, correction.as_ref()))
-        .collect::<Result<_>>()?;
+    let feeds = in_order(&run.feeds, |&feed| feed_row(run, feed, correction.as_ref()))?;
     Ok(MachineContoured {
         machine: run.file.text.name.clone(),
-        path: run.paths.name(&run.wanted),
-        path_at_feed: run.paths.title(&run.wanted),
-        compensation: run.compensation.name,
+        path: run.path.name(),
+        path_at_feed: run.path.title(&run.wanted),
+        compensation: run.compensation.name.clone(),
         feed_m_per_min: 60.0 * run.wanted.feed,
-        identified: identified.map(|found| IdentifiedCoupling {
-            squareness_um_per_m: [found.squareness.value, found.squareness.standard_error]
-                .map(|v| 1e6 * v),
-            crosstalk_um_per_m_per_s2: [found.crosstalk.value, found.crosstalk.standard_error]
-                .map(|v| 1e6 * v),
-            residual_um: 1e6 * found.residual,
-        }),
+        identified: identified.map(|found| IdentifiedCoupling::of(&found)),
+        networks: Vec::new(),
         corrected: correction.is_some(),
         directions,
-        both,
+        both: figures.as_ref().map(Both::of),
+        figures,
         feeds,
         report: None,
     })
 }
 
-/// The nominal circle of the plane that is shown.
-pub fn nominal(wanted: &Wanted) -> NominalCircle {
+fn nominal(radius: f64) -> NominalCircle {
     NominalCircle {
         centre: [0.0; 2],
-        radius: wanted.radius,
+        radius,
     }
 }
 
-fn circle_figures(wanted: &Wanted, turns: [&Shown; 2]) -> Result<CircleFigures> {
+fn circle_figures(radius: f64, turns: [&Shown; 2]) -> Result<CircleFigures, ContourError> {
     let [there, back] = turns.map(|turn| turn.at.iter().map(|at| at[0]).collect::<Vec<_>>());
-    figures(&nominal(wanted), &there, &back).into_diagnostic()
+    Ok(figures(&nominal(radius), &there, &back)?)
 }
 
-fn coupling_of(found: &CirclesFound) -> Result<Coupling> {
-    let pair = axis_machine::AxisCoupling {
+/// The coupling that takes away what was found from circles.
+///
+/// # Errors
+/// [`ContourError::Machine`] for values that no machine has.
+pub fn coupling_of(found: &CirclesFound) -> Result<Coupling, ContourError> {
+    let pair = AxisCoupling {
         of: 0,
         by: 1,
         squareness: found.squareness.value,
         crosstalk: found.crosstalk.value,
         straightness: None,
     };
-    Coupling::new(vec![pair]).into_diagnostic()
+    Ok(Coupling::new(vec![pair])?)
 }
 
-fn identify(run: &Run<'_>) -> Result<CirclesFound> {
-    if !run.paths.is_circle() || run.paths.tilt().is_some() {
-        return Err(wrong_use(
-            "--identify takes circles in the plane of X and Y; give --radius alone".to_owned(),
-        ));
-    }
-    let cases: Vec<(f64, Direction)> = (run.laps.identify.iter())
-        .flat_map(|&feed| senses(run.paths).into_iter().map(move |d| (feed / 60.0, d)))
+/// Squareness and cross-talk from circles at the feeds of [`Run::identify`], in both directions.
+///
+/// # Errors
+/// [`ContourError::NoCircle`] for another path, [`ContourError::Circles`] if the circles do not tell them apart.
+pub fn identify(run: &Run<'_>) -> Result<CirclesFound, ContourError> {
+    let (Some(radius), None) = (run.path.radius(), run.path.tilt()) else {
+        return Err(ContourError::NoCircle);
+    };
+    let cases: Vec<(f64, Direction)> = (run.identify.iter())
+        .flat_map(|&feed| run.path.senses().into_iter().map(move |d| (feed, d)))
         .collect();
-    let turns: Vec<Contoured> = (cases.par_iter())
-        .map(|&(feed, direction)| sense(run, &Wanted { feed, ..run.wanted }, direction, None))
-        .collect::<Result<_>>()?;
+    let turns = in_order(&cases, |&(feed, direction)| {
+        let wanted = Wanted { feed, ..run.wanted };
+        sense(run, (&wanted, 1), direction, None)
+    })?;
     let points: Vec<Vec<[f64; 2]>> = (turns.iter())
         .map(|turn| turn.shown.at.iter().map(|at| at[0]).collect())
         .collect();
     let circles = cases.iter().zip(&points);
     let circles: Vec<MeasuredCircle<'_>> = circles
         .map(|(&(feed, direction), points)| MeasuredCircle {
-            nominal: nominal(&run.wanted),
+            nominal: nominal(radius),
             feed,
             direction,
             points,
         })
         .collect();
-    fit_circles(&circles)
-        .into_diagnostic()
-        .wrap_err("--identify")
+    Ok(fit_circles(&circles)?)
 }
 
 fn at_feed(
     run: &Run<'_>,
     wanted: &Wanted,
     correction: Option<&Coupling>,
-) -> Result<Vec<Contoured>> {
-    let senses = senses(run.paths);
-    (senses.par_iter())
-        .map(|&direction| sense(run, wanted, direction, correction))
-        .collect()
+) -> Result<Vec<Contoured>, ContourError> {
+    in_order(&run.path.senses(), |&direction| {
+        sense(run, (wanted, run.laps), direction, correction)
+    })
 }
 
-fn feed_row(run: &Run<'_>, feed: f64, correction: Option<&Coupling>) -> Result<FeedRow> {
-    let wanted = Wanted {
-        feed: feed / 60.0,
-        ..run.wanted
-    };
+/// What `one` makes of each item, on all threads; of several errors the first in the items' order.
+fn in_order<T: Sync, U: Send>(
+    items: &[T],
+    one: impl Fn(&T) -> Result<U, ContourError> + Sync,
+) -> Result<Vec<U>, ContourError> {
+    let all: Vec<Result<U, ContourError>> = items.par_iter().map(&one).collect();
+    all.into_iter().collect()
+}
+
+fn feed_row(
+    run: &Run<'_>,
+    feed: f64,
+    correction: Option<&Coupling>,
+) -> Result<FeedRow, ContourError> {
+    let wanted = Wanted { feed, ..run.wanted };
     let all = at_feed(run, &wanted, correction)?;
     let worst = |lap: fn(&Contoured) -> Option<&LapFigures>| {
         let laps = all.iter().filter_map(lap);
         laps.map(|lap| lap.contour_error_um).fold(0.0, f64::max)
     };
-    let fastest = match run.paths.route(&wanted, Direction::Counterclockwise)? {
-        Route::Flat(legs) => fastest(&legs),
-        Route::Space(legs) => fastest(&legs),
-    };
     Ok(FeedRow {
-        feed_m_per_min: feed,
-        fastest_m_per_min: 60.0 * fastest,
+        feed_m_per_min: 60.0 * feed,
+        fastest_m_per_min: 60.0 * all.iter().map(|one| one.fastest).fold(0.0, f64::max),
         duration_s: all[0].duration_s,
         first_um: worst(|c| c.laps.first()),
         last_um: worst(|c| c.laps.last()),
@@ -212,21 +210,20 @@ fn fastest<const D: usize>(legs: &[Leg<D>]) -> f64 {
 
 fn sense(
     run: &Run<'_>,
-    wanted: &Wanted,
+    (wanted, count): (&Wanted, u32),
     direction: Direction,
     correction: Option<&Coupling>,
-) -> Result<Contoured> {
-    let plane = run.paths.tilt().unwrap_or(0.0);
-    let mut found = match run.paths.route(wanted, direction)? {
-        Route::Flat(legs) => laps::<2>(run, &legs, correction, |p| p)?,
-        Route::Space(legs) => laps::<3>(run, &legs, correction, |[x, y, z]| {
+) -> Result<Contoured, ContourError> {
+    let plane = run.path.tilt().unwrap_or(0.0);
+    let mut found = match run.path.route(wanted, direction)? {
+        Route::Flat(legs) => laps::<2>(run, (&legs, count), correction, |p| p)?,
+        Route::Space(legs) => laps::<3>(run, (&legs, count), correction, |[x, y, z]| {
             [x, plane.cos() * y + plane.sin() * z]
         })?,
     };
-    if run.paths.is_circle() {
+    if let Some(radius) = run.path.radius() {
         let points: Vec<[f64; 2]> = found.shown.at.iter().map(|at| at[0]).collect();
-        let peaks =
-            quadrant_glitches(&nominal(wanted), &points, AFTER_REVERSAL).into_diagnostic()?;
+        let peaks = quadrant_glitches(&nominal(radius), &points, AFTER_REVERSAL)?;
         found.reversals = peaks.iter().map(Reversal::of).collect();
     }
     Ok(found)
@@ -235,22 +232,19 @@ fn sense(
 /// Laps of one sense.
 fn laps<const D: usize>(
     run: &Run<'_>,
-    legs: &[Leg<D>],
+    (legs, count): (&[Leg<D>], u32),
     correction: Option<&Coupling>,
     plane: impl Fn([f64; D]) -> [f64; 2],
-) -> Result<Contoured> {
-    let machine: CoupledMachine<D> = run.file.machine().into_diagnostic()?.ok_or_else(|| {
-        miette!(
-            "the path has {D} coordinates, and {} has {} axes; valid: a machine file with x, y and z, or a path in the plane",
-            run.file.path.display(),
-            run.file.dimensions()
-        )
+) -> Result<Contoured, ContourError> {
+    let machine: Option<CoupledMachine<D>> = run.file.machine()?;
+    let machine = machine.ok_or_else(|| ContourError::Dimensions {
+        machine: run.file.path.clone(),
+        axes: run.file.dimensions(),
+        path: D,
     })?;
-    let mut strategies = Vec::new();
+    let strategies = run.compensation.strategies(machine.drives().len())?;
     let mut sensors: Vec<DriveSensors<'_>> = Vec::new();
     for (d, drive) in machine.drives().iter().enumerate() {
-        let strategy = run.compensation.strategy(&Predictors::of(&drive.nominal));
-        strategies.push(strategy.into_diagnostic()?);
         let seed = run.seed.wrapping_mul(2).wrapping_add(d as u64);
         let mut noise = Noise::good(&drive.nominal).scaled(run.noise).sensors(seed);
         let noisy = run.noise > 0.0;
@@ -260,25 +254,19 @@ fn laps<const D: usize>(
             }
         }));
     }
-    let mut runner = Laps::new(&machine, strategies)
-        .into_diagnostic()?
-        .sensing(sensors);
+    let mut runner = Laps::new(&machine, strategies)?.sensing(sensors);
     if let Some(coupling) = correction {
         runner = runner.correcting(coupling.clone());
     }
     let mut found = Vec::new();
-    let mut shown = Shown {
-        s: Vec::new(),
-        error: Vec::new(),
-        at: Vec::new(),
-    };
+    let mut shown = Shown::default();
     let (mut corners, mut curves) = (Vec::new(), Vec::new());
-    for lap in 1..=run.laps.laps {
-        let last = lap == run.laps.laps;
+    for lap in 1..=count {
+        let last = lap == count;
         let mut errors = Vec::new();
         let mut begun = 0.0;
         for leg in legs {
-            let traced = runner.lap(&leg.profile).into_diagnostic()?.lap.traced;
+            let traced = runner.lap(&leg.profile)?.lap.traced;
             if leg.rapid {
                 continue;
             }
@@ -289,16 +277,13 @@ fn laps<const D: usize>(
                 corners.extend(sharp);
                 curves.extend(bent);
                 for (foot, position) in feet.iter().zip(traced.between(leg.counted)) {
-                    shown.s.push(begun + foot.s);
-                    shown.error.push(foot.length());
-                    shown
-                        .at
-                        .push([plane(*position), plane(foot.point.position)]);
+                    shown.push(begun, foot, position, &plane);
                 }
             }
             begun += leg.profile.path().length();
         }
         found.push(LapFigures::of(lap as usize, errors));
+        (run.each)();
     }
     let durations = legs.iter().map(|leg| leg.profile.duration());
     Ok(Contoured {
@@ -307,6 +292,7 @@ fn laps<const D: usize>(
             _ => "program".to_owned(),
         },
         duration_s: durations.sum(),
+        fastest: fastest(legs),
         laps: found,
         reversals: Vec::new(),
         corners,

@@ -1,18 +1,17 @@
-//! Paths of `contour`: circles, the butterfly, NURBS from a file, programs in G-code.
+//! Options of `contour` that name a path, laps and a machine.
 
-use std::f64::consts::FRAC_PI_4;
 use std::path::{Path as FilePath, PathBuf};
-use std::sync::Arc;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::Deserialize;
-use toolpath::named::{CircleTest, Direction, butterfly};
-use toolpath::{
-    FeedLimits, FeedProfile, Line, Nurbs, NurbsData, Path, PathSegment, PathTolerances, gcode,
-};
+use toolpath::named::butterfly;
+use toolpath::{Blend, Nurbs, NurbsData, Path, PathTolerances, gcode};
 
-use crate::context::from_toml;
+use super::contour_results::RUNS;
+use super::contour_route::{AnyPath, PathChoice, Wanted};
+use crate::context::{from_toml, read_text};
+use crate::exit::wrong_use;
 
 /// Options that name another path than a circle.
 #[derive(Args)]
@@ -37,6 +36,24 @@ pub struct PathOptions {
         allow_negative_numbers = true
     )]
     rapid: f64,
+    /// Blend the corners between lines of a program within this distance of each, as after G64 P (mm); without, the feed stops at
+    /// corners until a G64 P of the program
+    #[arg(
+        long,
+        value_name = "MM",
+        requires = "program",
+        allow_negative_numbers = true
+    )]
+    blend: Option<f64>,
+    /// Shape of blends, of G64 too: quintic, whose curvature does not jump; arc or parabola, as LinuxCNC has them, at whose ends the feed
+    /// stops unless --acceleration-step allows a step
+    #[arg(
+        long,
+        value_name = "SHAPE",
+        default_value = "quintic",
+        requires = "program"
+    )]
+    blend_shape: Shape,
     /// Step of each axis' acceleration that is allowed where the curvature jumps, m/s²; with 0 the feed stops there
     #[arg(
         long,
@@ -47,29 +64,49 @@ pub struct PathOptions {
     acceleration_step: f64,
 }
 
-/// Feed and limits of the axes, SI units.
-#[derive(Clone, Copy)]
-pub struct Wanted {
-    pub radius: f64,
-    pub feed: f64,
-    pub acceleration: f64,
-    pub jerk: f64,
+/// Options of machines and laps.
+#[derive(Args)]
+pub struct LapOptions {
+    /// Machine file: names the axis files and what lies between them (docs/two-axes.md)
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["x", "y"])]
+    pub machine: Option<PathBuf>,
+    /// Laps one after the other; a compensation that learns goes on from lap to lap
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100))]
+    pub laps: u32,
+    /// Find squareness and cross-talk from circles at these feeds, m/min: two at least
+    #[arg(long, value_name = "M_PER_MIN", num_args = 1.., value_delimiter = ',')]
+    pub identify: Vec<f64>,
+    /// Take squareness, straightness and cross-talk off the references: those of the machine file, or found by --identify
+    #[arg(long)]
+    pub correct: bool,
+    /// Folder with results of `train` and `identify` of each axis (one folder an axis, by its name), for a compensation that needs them
+    #[arg(long, value_name = "DIR", default_value = RUNS)]
+    pub runs: PathBuf,
+    /// Take results that were made with --quick
+    #[arg(long)]
+    pub quick: bool,
+    /// Further feeds for a table of feed against error, m/min
+    #[arg(long, value_name = "M_PER_MIN", num_args = 1.., value_delimiter = ',')]
+    pub feeds: Vec<f64>,
 }
 
-/// A part of a path at one feed, from standstill to standstill.
-#[derive(Clone)]
-pub struct Leg<const D: usize> {
-    pub name: String,
-    pub profile: Arc<FeedProfile<D>>,
-    /// Arc lengths between which errors count, m.
-    pub counted: (f64, f64),
-    pub rapid: bool,
+impl LapOptions {
+    /// Whether an option was given that circles of two axis files do not have.
+    pub fn are_given(&self) -> bool {
+        let lists = self.identify.len() + self.feeds.len();
+        self.machine.is_some() || self.laps > 1 || lists > 0 || self.correct
+    }
 }
 
-/// A path in two or three dimensions.
-pub enum Route {
-    Flat(Vec<Leg<2>>),
-    Space(Vec<Leg<3>>),
+/// Shapes of blends.
+#[derive(Clone, Copy, ValueEnum)]
+enum Shape {
+    /// A Bézier curve of degree 5
+    Quintic,
+    /// A circular arc
+    Arc,
+    /// A parabola
+    Parabola,
 }
 
 /// A NURBS file.
@@ -84,194 +121,94 @@ struct NurbsFile {
 }
 
 impl PathOptions {
-    /// Whether the path is a circle.
-    pub fn is_circle(&self) -> bool {
-        self.program.is_none() && self.nurbs.is_none() && !self.butterfly
-    }
-
-    /// Tilt of the circle, rad; none of one in the plane.
-    pub fn tilt(&self) -> Option<f64> {
-        self.tilt.map(f64::to_radians)
-    }
-
     /// Whether an option was given that circles of two axis files do not have.
     pub fn are_given(&self) -> bool {
-        !self.is_circle() || self.tilt.is_some() || self.acceleration_step != 0.0
+        let other = self.program.is_some() || self.nurbs.is_some() || self.butterfly;
+        other || self.tilt.is_some() || self.acceleration_step != 0.0
     }
 
-    /// What the path is called, and at which feed it is run.
-    pub fn title(&self, wanted: &Wanted) -> String {
-        let before = match self.program {
-            Some(_) => " before its first F",
-            None => "",
-        };
-        format!(
-            "{}, {} m/min{before}",
-            self.name(wanted),
-            60.0 * wanted.feed
-        )
-    }
-
-    /// What the path is called.
-    pub fn name(&self, wanted: &Wanted) -> String {
-        let file = |path: &FilePath| path.display().to_string();
-        match (&self.program, &self.nurbs) {
-            (Some(path), _) => format!("program {}", file(path)),
-            (_, Some(path)) => format!("curve {}", file(path)),
-            _ if self.butterfly => "butterfly".to_owned(),
-            _ => {
-                let tilt = self.tilt.map(|deg| format!(" tilted by {deg}°"));
-                format!(
-                    "circle of {} mm{}",
-                    1e3 * wanted.radius,
-                    tilt.unwrap_or_default()
-                )
-            }
+    /// With feeds and limits of these options in place of the defaults.
+    pub fn wanted(&self, wanted: Wanted) -> Wanted {
+        Wanted {
+            rapid: self.rapid / 60.0,
+            acceleration_step: self.acceleration_step,
+            ..wanted
         }
     }
 
-    /// The path. A circle in the sense of `direction`; others have one sense.
-    pub fn route(&self, wanted: &Wanted, direction: Direction) -> Result<Route> {
+    /// The path; a circle has `radius` (m) if no other path is named.
+    pub fn choice(&self, radius: f64) -> Result<PathChoice> {
         if let Some(file) = &self.program {
-            return self.of_program(file, wanted);
+            return self.program_of(file);
         }
         if let Some(file) = &self.nurbs {
-            return self.of_nurbs(file, wanted);
+            return nurbs(file);
         }
         if self.butterfly {
-            let path = butterfly().into_diagnostic()?;
-            return Ok(Route::Flat(vec![self.whole("butterfly", path, wanted)?]));
+            return Ok(PathChoice::Whole {
+                name: "butterfly".to_owned(),
+                part: "butterfly".to_owned(),
+                path: AnyPath::Flat(butterfly().into_diagnostic()?),
+            });
         }
-        let circle = CircleTest {
-            // Between two reversals, so that all four lie in the counted turn.
-            start: FRAC_PI_4,
-            direction,
-            ..CircleTest::new(wanted.radius)
-        };
-        let name = match direction {
-            Direction::Clockwise => "clockwise",
-            Direction::Counterclockwise => "counterclockwise",
-        };
-        Ok(match self.tilt() {
-            None => {
-                let circle = circle.path().into_diagnostic().wrap_err("--radius")?;
-                let whole = self.whole(name, circle.path, wanted)?;
-                Route::Flat(vec![Leg {
-                    counted: circle.counted,
-                    ..whole
-                }])
-            }
-            Some(tilt) => {
-                let circle = circle.path_tilted(tilt).into_diagnostic();
-                let circle = circle.wrap_err("--radius or --tilt")?;
-                let whole = self.whole(name, circle.path, wanted)?;
-                Route::Space(vec![Leg {
-                    counted: circle.counted,
-                    ..whole
-                }])
-            }
+        Ok(PathChoice::Circle {
+            radius,
+            tilt: self.tilt.map(f64::to_radians),
         })
     }
 
-    fn whole<const D: usize>(&self, name: &str, path: Path<D>, wanted: &Wanted) -> Result<Leg<D>> {
-        // What an axis has to do at the feed wanted is not limited further.
-        let limits = FeedLimits {
-            acceleration_step: [self.acceleration_step; D],
-            ..FeedLimits::equal(wanted.feed, wanted.feed, wanted.acceleration, wanted.jerk)
-        };
-        let profile = FeedProfile::plan(&path, &limits).into_diagnostic();
-        let profile = profile.wrap_err("--feed, --acceleration, --acceleration-step or --jerk")?;
-        Ok(Leg {
-            name: name.to_owned(),
-            counted: (0.0, path.length()),
-            profile: Arc::new(profile),
-            rapid: false,
-        })
-    }
-
-    fn of_nurbs(&self, file: &FilePath, wanted: &Wanted) -> Result<Route> {
-        let shown = || format!("--nurbs {}", file.display());
-        let text = std::fs::read_to_string(file)
-            .into_diagnostic()
-            .wrap_err_with(shown)?;
-        let data: NurbsFile = from_toml(&text).wrap_err_with(shown)?;
-        fn points<const D: usize>(data: &NurbsFile) -> Option<Vec<[f64; D]>> {
-            let point = |p: &Vec<f64>| {
-                <[f64; D]>::try_from(p.as_slice())
-                    .ok()
-                    .map(|p| p.map(|x| 1e-3 * x))
-            };
-            data.points_mm.iter().map(point).collect()
-        }
-        let curve = |name: &str| name.to_owned();
-        if let Some(points) = points::<2>(&data) {
-            let path = of_points(points, &data).wrap_err_with(shown)?;
-            return Ok(Route::Flat(vec![self.whole(
-                &curve("curve"),
-                path,
-                wanted,
-            )?]));
-        }
-        let Some(points) = points::<3>(&data) else {
-            let valid = "valid: two, or three, coordinates of each point";
-            return Err(
-                miette!("points_mm do not have one number of coordinates; {valid}")
-                    .wrap_err(shown()),
-            );
-        };
-        let path = of_points(points, &data).wrap_err_with(shown)?;
-        Ok(Route::Space(vec![self.whole(
-            &curve("curve"),
-            path,
-            wanted,
-        )?]))
-    }
-
-    fn of_program(&self, file: &FilePath, wanted: &Wanted) -> Result<Route> {
+    fn program_of(&self, file: &FilePath) -> Result<PathChoice> {
         let shown = || format!("--program {}", file.display());
-        let text = std::fs::read_to_string(file)
-            .into_diagnostic()
-            .wrap_err_with(shown)?;
-        let runs = gcode::read(&text, [0.0; 3], &PathTolerances::default());
+        let text = read_text(file).wrap_err_with(shown)?;
+        let shape = match self.blend_shape {
+            Shape::Quintic => Blend::Quintic,
+            Shape::Arc => Blend::Arc,
+            Shape::Parabola => Blend::Parabola,
+        };
+        if let Some(mm) = self.blend.filter(|mm| !(1e-6..=1e3).contains(mm)) {
+            return Err(wrong_use(format!(
+                "--blend is {mm} mm; valid: from 1e-6 to 1000"
+            )));
+        }
+        let blending = (shape, self.blend.map(|mm| 1e-3 * mm));
+        let runs = gcode::read_blended(&text, [0.0; 3], &PathTolerances::default(), blending);
         let runs = runs.into_diagnostic().wrap_err_with(shown)?;
         if runs.is_empty() {
             return Err(
                 miette!("no motion is in it; valid: G0 to G3 with X, Y, Z").wrap_err(shown())
             );
         }
-        let flat: Option<Vec<Path<2>>> = runs.iter().map(|run| flattened(&run.path)).collect();
-        let leg = |i: usize| {
-            let run = &runs[i];
-            let name = match run.lines {
-                (a, b) if a == b => format!("line {a}"),
-                (a, b) => format!("lines {a} to {b}"),
-            };
-            let feed = run.feed.unwrap_or(self.rapid / 60.0);
-            (name, Wanted { feed, ..*wanted }, run.feed.is_none())
-        };
-        fn all<const D: usize>(
-            options: &PathOptions,
-            paths: Vec<Path<D>>,
-            leg: impl Fn(usize) -> (String, Wanted, bool),
-        ) -> Result<Vec<Leg<D>>> {
-            let one = |(i, path)| {
-                let (name, wanted, rapid) = leg(i);
-                Ok(Leg {
-                    rapid,
-                    ..options.whole(&name, path, &wanted)?
-                })
-            };
-            paths.into_iter().enumerate().map(one).collect()
-        }
-        Ok(match flat {
-            Some(paths) => Route::Flat(all(self, paths, leg)?),
-            None => Route::Space(all(
-                self,
-                runs.iter().map(|run| run.path.clone()).collect(),
-                leg,
-            )?),
+        Ok(PathChoice::Program {
+            name: format!("program {}", file.display()),
+            runs,
         })
     }
+}
+
+fn nurbs(file: &FilePath) -> Result<PathChoice> {
+    let shown = || format!("--nurbs {}", file.display());
+    let text = read_text(file).wrap_err_with(shown)?;
+    let data: NurbsFile = from_toml(&text).wrap_err_with(shown)?;
+    fn points<const D: usize>(data: &NurbsFile) -> Option<Vec<[f64; D]>> {
+        let point = |p: &Vec<f64>| {
+            <[f64; D]>::try_from(p.as_slice())
+                .ok()
+                .map(|p| p.map(|x| 1e-3 * x))
+        };
+        data.points_mm.iter().map(point).collect()
+    }
+    let path = match (points::<2>(&data), points::<3>(&data)) {
+        (Some(points), _) => of_points(points, &data).map(AnyPath::Flat),
+        (_, Some(points)) => of_points(points, &data).map(AnyPath::Space),
+        _ => Err(miette!(
+            "points_mm do not have one number of coordinates; valid: two, or three, coordinates of each point"
+        )),
+    };
+    Ok(PathChoice::Whole {
+        name: format!("curve {}", file.display()),
+        part: "curve".to_owned(),
+        path: path.wrap_err_with(shown)?,
+    })
 }
 
 fn of_points<const D: usize>(points: Vec<[f64; D]>, data: &NurbsFile) -> Result<Path<D>> {
@@ -283,30 +220,4 @@ fn of_points<const D: usize>(points: Vec<[f64; D]>, data: &NurbsFile) -> Result<
     };
     let curve = Nurbs::new(&data).into_diagnostic()?;
     Path::new(vec![curve.into()]).into_diagnostic()
-}
-
-/// The same path in the plane; none if Z moves.
-fn flattened(path: &Path<3>) -> Option<Path<2>> {
-    let level = path.at(0.0).position[2];
-    let segment = |segment: &PathSegment<3>| -> Option<PathSegment<2>> {
-        let [x, y, _] = segment.at(0.0).position;
-        Some(match segment {
-            PathSegment::Line(line) => {
-                let [a, b, z] = line.to();
-                (z == level).then_some(())?;
-                Line::new([x, y], [a, b]).ok()?.into()
-            }
-            PathSegment::Arc(arc) => {
-                let [cx, cy, cz] = arc.centre();
-                let [tx, ty, tz] = arc.at(0.0).tangent;
-                (cz == level && tz == 0.0).then_some(())?;
-                toolpath::Arc::new([cx, cy], [x, y], [tx, ty], arc.sweep())
-                    .ok()?
-                    .into()
-            }
-            _ => return None,
-        })
-    };
-    let segments = path.segments().iter().map(segment).collect::<Option<_>>()?;
-    Path::new(segments).ok()
 }

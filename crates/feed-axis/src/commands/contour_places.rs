@@ -1,20 +1,20 @@
 //! Corners and tight curves of a path, with the contour error there.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use toolpath::{FeedProfile, Foot, JunctionKind};
 
 /// A corner or a curve.
-#[derive(Clone, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Place {
     /// Part of the path.
     pub part: String,
     /// Arc length from the part's begin.
     pub s_mm: f64,
     /// Angle of a corner.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle_deg: Option<f64>,
     /// Radius of a curve.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius_mm: Option<f64>,
     /// Greatest contour error near it.
     pub error_um: f64,

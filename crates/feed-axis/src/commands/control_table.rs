@@ -1,5 +1,7 @@
 //! The tables `[control]` and `[tolerances]` of an axis file, with an estimated controller.
 
+use std::path::Path;
+
 use axis_sim::Axis;
 use axis_sim::control::{CONTROLS, Control, units_of_gain};
 use axis_sim::part::{Key, Part};
@@ -87,9 +89,19 @@ pub fn with_control(
     Ok(document.to_string())
 }
 
+/// How a file of tuned gains begins.
+const TUNED: &str = "# Gains set by `feed-axis tune`, from ";
+
 /// The axis file's text with the keys of a tuned axis, to seven digits, and the keys as they stand
-/// there.
-pub fn with_tuned(text: &str, keys: Vec<TunedKey>) -> Result<(String, Vec<TunedKey>)> {
+/// there. Its first line says so, with the name of the file that they are from; comments behind the
+/// keys' old values are gone.
+pub fn with_tuned(text: &str, from: &Path, keys: Vec<TunedKey>) -> Result<(String, Vec<TunedKey>)> {
+    let from = from.file_name().unwrap_or_default().display();
+    let first = text.split_inclusive('\n').next();
+    let text = match first.filter(|line| line.starts_with(TUNED)) {
+        Some(line) => &text[line.len()..],
+        None => text,
+    };
     let mut document: DocumentMut = text.parse().into_diagnostic()?;
     // A file of schema 1 has the current controllers among the others.
     let has_actuator = document.contains_key("actuator");
@@ -97,14 +109,22 @@ pub fn with_tuned(text: &str, keys: Vec<TunedKey>) -> Result<(String, Vec<TunedK
     for key in keys {
         let section = if has_actuator { key.section } else { "control" };
         let value = written(key.value, 1.0, key.limits);
-        set(table(&mut document, section)?, &key.key, value.into());
+        let table = table(&mut document, section)?;
+        let old = table.get(&key.key).and_then(Item::as_float);
+        if old != Some(value) {
+            // A comment behind the old value is about that value.
+            table.insert(&key.key, Item::Value(value.into()));
+        }
         all.push(TunedKey {
             before: key.before.map(digits),
             value,
             ..key
         });
     }
-    Ok((document.to_string(), all))
+    let text = format!(
+        "{TUNED}{from}; comments below on gains and margins are about that file.\n{document}"
+    );
+    Ok((text, all))
 }
 
 /// The gains' own lines in `[tolerances]`; those of the controller that was there are gone.
@@ -202,6 +222,27 @@ mod tests {
         assert!((most * rpm_per_mm / 1e9 - 1.0).abs() < 1e-15 && most < 9_549_297.0);
         assert_eq!(written(1.0 / 3.0, 1.0, limits), 0.333_333_3);
         assert_eq!(written(17.59, 1.0, None), 17.59);
+    }
+
+    #[test]
+    fn a_tuned_value_loses_the_comment_on_the_old_one() {
+        let key = |value| TunedKey {
+            section: "control",
+            key: "kv_per_s".to_owned(),
+            before: Some(20.0),
+            value,
+            limits: None,
+        };
+        let text = "# An axis.\n[control]\nkv_per_s = 20.0 # 1.2 m/min per mm\n";
+        let same = with_tuned(text, Path::new("a/x.toml"), vec![key(20.0)]).unwrap();
+        let first = "# Gains set by `feed-axis tune`, from x.toml; comments below on gains and margins are about that file.\n";
+        assert_eq!(same.0, format!("{first}{text}"));
+        // Tuned again: one such line.
+        let again = with_tuned(&same.0, Path::new("x.toml"), vec![key(30.0)]).unwrap();
+        assert_eq!(
+            again.0,
+            format!("{first}# An axis.\n[control]\nkv_per_s = 30.0\n")
+        );
     }
 
     #[test]

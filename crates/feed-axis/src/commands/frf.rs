@@ -4,10 +4,12 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use axis_log::intake::Options as Intake;
+use axis_log::{PlusMinus, never_zero};
 use axis_sim::{Axis, SixDigits, known_channels};
 use clap::Args;
 use drive_loop::{MeasureSettings, MeasuredDrive, WithDeviation};
 use miette::{IntoDiagnostic, Result, WrapErr};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::analyse::axis_with;
@@ -50,10 +52,10 @@ pub struct Options {
 }
 
 /// What `frf` writes as JSON.
-#[derive(Serialize)]
-struct Found {
+#[derive(Serialize, JsonSchema)]
+pub struct FrfFound {
     /// One for each log.
-    measurements: Vec<MeasuredDrive>,
+    pub measurements: Vec<MeasuredDrive>,
 }
 
 /// Runs the command.
@@ -75,7 +77,7 @@ pub fn command(options: &Options) -> Result<()> {
         axis_report::write_atomic(path, &page).into_diagnostic()?;
         let _ = writeln!(text, "{}", path.display());
     }
-    let value = Found { measurements };
+    let value = FrfFound { measurements };
     print("frf", &Worded { text, value })
 }
 
@@ -104,11 +106,7 @@ pub fn measured(
 }
 
 fn pair(of: WithDeviation, scale: f64, digits: usize) -> String {
-    format!(
-        "{:.digits$} ± {:.digits$}",
-        scale * of.value,
-        scale * of.deviation
-    )
+    PlusMinus::new(scale * of.value, scale * of.deviation, digits).to_string()
 }
 
 /// A measurement as people read it.
@@ -154,14 +152,14 @@ fn words(found: &MeasuredDrive) -> String {
             .map_or("not stable".to_owned(), |s| format!("{s:.3}"));
         let _ = writeln!(
             text,
-            "  greatest sensitivity with the gains of the file: {} at {:.1} Hz from the command, {} from the responses; model {model}",
+            "  maximum sensitivity with the gains of the file: {} at {:.1} Hz from the command, {} from the responses; model {model}",
             pair(m.sensitivity, 1.0, 3),
             m.sensitivity_at_hz,
             pair(m.by_response, 1.0, 3)
         );
         let _ = writeln!(
             text,
-            "  greatest sensitivity of the position loop: {:.3}",
+            "  maximum sensitivity of the position loop: {:.3}",
             m.position
         );
         if let (Some(phase), Some(delay), Some(at)) = (m.phase_deg, m.delay_s, m.crossover_hz) {
@@ -192,7 +190,7 @@ fn words(found: &MeasuredDrive) -> String {
 fn table(found: &MeasuredDrive) -> String {
     let mut text = format!(
         "  {:>8}  {:>11}  {:>8}  {:>7}  {:>9}  {:>11}\n",
-        "Hz", "size", "± %", "phase°", "coherence", "model"
+        "Hz", "magnitude", "± %", "phase°", "coherence", "model"
     );
     for at in SHOWN {
         let lines = found.motor_speed.iter().zip(&found.motor_speed_model);
@@ -203,13 +201,13 @@ fn table(found: &MeasuredDrive) -> String {
             continue;
         };
         let [re, im] = line.value;
-        let size = re.hypot(im);
+        let magnitude = re.hypot(im);
         let _ = writeln!(
             text,
-            "  {:>8.2}  {:>11.4e}  {:>8.2}  {:>7.1}  {:>9.4}  {:>11.4e}",
+            "  {:>8.2}  {:>11.4e}  {:>8}  {:>7.1}  {:>9.4}  {:>11.4e}",
             line.frequency_hz,
-            size,
-            100.0 * line.deviation / size,
+            magnitude,
+            never_zero(100.0 * line.deviation / magnitude, 2),
             im.atan2(re).to_degrees(),
             line.coherence,
             model[0].hypot(model[1])

@@ -8,10 +8,13 @@ pub(crate) mod compensate;
 mod compensate_moves;
 mod compensate_warm;
 pub(crate) mod contour;
-pub(crate) mod contour_found;
-mod contour_laps;
+pub mod contour_drives;
+pub mod contour_found;
+pub mod contour_laps;
 mod contour_paths;
-mod contour_places;
+pub mod contour_places;
+pub mod contour_results;
+pub mod contour_route;
 pub mod control_table;
 pub mod discover;
 mod discover_words;
@@ -88,7 +91,7 @@ pub enum Command<J: Jobs> {
     Simulate(simulate::Options),
     /// Simulate a machine of two or three axes on a circle or another path: contour error, figures in the manner of ISO
     /// 230-4, laps
-    Contour(contour::Options),
+    Contour(Box<contour::Options>),
     /// Hours of a duty: temperatures, growth by position and time, thermal force
     Heat(heat::Options),
     /// Check the axis against the data sheets of its parts, under a duty: value, limit, margin

@@ -1,5 +1,6 @@
 //! `pipeline`: every stage in its order; those up to date are left alone.
 
+use axis_pipeline::strategies::{Need, Predictors};
 use miette::Result;
 use serde::Serialize;
 
@@ -15,6 +16,34 @@ struct UpToDate {
 }
 
 type Run = fn(&Context) -> Result<()>;
+
+/// Predictors with what is needed; the stages that they come from are run first if they are not up to date.
+///
+/// # Errors
+/// Those of the stages.
+pub fn predictors(context: &Context, needs: &[Need]) -> Result<Predictors> {
+    let _claim = context.claim()?;
+    let stages: [(Need, Stage<'_>, Run); 3] = [
+        (Need::Network, sample::stage(context), sample::run),
+        (Need::Network, train::stage(context), train::run),
+        (
+            Need::IdentifiedFriction,
+            identify::stage(context),
+            identify::run,
+        ),
+    ];
+    for (need, stage, run) in &stages {
+        // Friction and transfer functions come from one stage.
+        let is_needed = match need {
+            Need::IdentifiedFriction => needs.iter().any(|need| *need != Need::Network),
+            need => needs.contains(need),
+        };
+        if is_needed && !stage.is_current() {
+            run(context)?;
+        }
+    }
+    validate::predictors(context, needs)
+}
 
 /// Runs the command.
 pub fn run(common: &Common) -> Result<()> {

@@ -12,6 +12,7 @@ use miette::{IntoDiagnostic, Result};
 use schemars::generate::SchemaSettings;
 use serde_json::Value;
 
+use super::frf::FrfFound;
 use super::manual;
 use super::tune::TuneFound;
 use crate::out_file;
@@ -42,6 +43,8 @@ pub enum File {
     Loops,
     /// What `tune --format json` writes
     Tuning,
+    /// What `frf --format json` writes
+    Frf,
 }
 
 impl File {
@@ -62,6 +65,7 @@ impl File {
             Self::Summary => generator.into_root_schema_for::<Summary>().to_value(),
             Self::Loops => generator.into_root_schema_for::<LoopAnalysis>().to_value(),
             Self::Tuning => generator.into_root_schema_for::<TuneFound>().to_value(),
+            Self::Frf => generator.into_root_schema_for::<FrfFound>().to_value(),
             Self::Discovery => generator.into_root_schema_for::<Discovery>().to_value(),
         }
     }

@@ -39,7 +39,7 @@ pub struct Options {
     force: bool,
     #[command(flatten)]
     ranges: Ranges,
-    /// Greatest sensitivity at the command and at the position, in every case
+    /// Maximum sensitivity at the command and at the position, in every case
     #[arg(long, value_name = "MS", default_value_t = 1.6)]
     sensitivity: f64,
     /// The same with one more cycle of delay
@@ -102,8 +102,7 @@ pub fn command(options: &Options) -> Result<()> {
     };
     let tuned = Tuning::of(&axis, &settings).into_diagnostic()?;
     let text = with_keys(&read_text(&options.axis)?, &options.set)?;
-    let text = moved(&text, &options.axis, &folder)?;
-    let (text, keys) = with_tuned(&text, tuned.keys(&axis))?;
+    let (text, keys) = file_of(&text, &options.axis, &folder, tuned.keys(&axis))?;
     let written = Axis::parse(&options.out.display().to_string(), &text)?;
     write_whole(&options.out, text.as_bytes())?;
     let found = TuneFound {
@@ -119,6 +118,17 @@ pub fn command(options: &Options) -> Result<()> {
     }
     text += &shown(&options.out);
     print("tune", &Worded { text, value: found })
+}
+
+/// The text of an axis file `from`, with the keys of its tuned axis, for a file in another folder; and
+/// the keys as they stand there.
+pub fn file_of(
+    text: &str,
+    from: &Path,
+    folder: &Path,
+    keys: Vec<TunedKey>,
+) -> Result<(String, Vec<TunedKey>)> {
+    with_tuned(&moved(text, from, folder)?, from, keys)
 }
 
 fn shown(path: &Path) -> String {
@@ -151,7 +161,7 @@ fn words(found: &TuneFound) -> String {
 fn lines(t: &Tuning) -> Vec<String> {
     let sensitivity = |s: Option<f64>| s.map_or("not stable".to_owned(), |s| format!("{s:.2}"));
     let mut all = vec![format!(
-        "greatest sensitivity {} (was {}), with one more cycle of delay {} (was {})",
+        "maximum sensitivity {} (was {}), with one more cycle of delay {} (was {})",
         sensitivity(t.tuned.sensitivity),
         sensitivity(t.file.sensitivity),
         sensitivity(t.tuned.sensitivity_late),

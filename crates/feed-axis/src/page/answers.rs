@@ -3,7 +3,7 @@
 use axis_pipeline::Figures;
 use axis_pipeline::strategies::{NETWORK_LUGRE, STRATEGIES, StrategyKind};
 use axis_pipeline::summary::TrajectorySummary;
-use axis_report::engineering;
+use axis_report::{engineering, fixed};
 
 use crate::context::Context;
 use crate::program;
@@ -58,7 +58,7 @@ fn what_is_left((kind, left): Left, none: Figures, unit: &str) -> String {
     let less = |share: f64| match share {
         // Rounded it would say that nothing is left.
         share if (0.0..0.001).contains(&share) => "over 99.9 %".to_owned(),
-        share => format!("{:.1} %", 100.0 * (1.0 - share)),
+        share => format!("{} %", fixed(100.0 * (1.0 - share), 1)),
     };
     format!(
         "{} leaves {} peak, {} mean: {} and {} less.",

@@ -1,6 +1,6 @@
 //! The page of a machine on a path: magnified pictures, error along the path, laps, feeds.
 
-use axis_report::{Cell, Figure, Page, Section, Series, Table};
+use axis_report::{Cell, Figure, Page, Section, Series, Table, engineering};
 
 use crate::commands::contour_found::{Contoured, MachineContoured};
 
@@ -40,6 +40,9 @@ pub fn page(found: &MachineContoured, radius: Option<f64>) -> Page {
         .note("Standard errors as if the residuals were independent; what friction leaves is not.");
         page = page.section(Section::new("Squareness and cross-talk").table(table));
     }
+    if !found.networks.is_empty() {
+        page = page.section(networks(found));
+    }
     if let Some(section) = places(found) {
         page = page.section(section);
     }
@@ -55,6 +58,33 @@ fn row(name: &str, [value, error]: [f64; 2]) -> [Cell; 3] {
         Cell::number(value, 2),
         Cell::number(error, 2),
     ]
+}
+
+/// What the training of each axis' network showed.
+fn networks(found: &MachineContoured) -> Section {
+    let mut table = Table::new(
+        "Errors of the predicted position on samples that no training saw: network, and the best linear map of as many samples",
+        [
+            "axis",
+            "samples",
+            "network, greatest",
+            "mean",
+            "linear map, greatest",
+            "mean",
+        ],
+    );
+    for one in &found.networks {
+        let value = |v| Cell::text(engineering(1e-6 * v, "m", 3));
+        table = table.row([
+            Cell::text(format!("{} {}", one.axis, one.name)),
+            Cell::text(one.samples.to_string()),
+            value(one.unseen_um[0]),
+            value(one.unseen_um[1]),
+            value(one.linear_um[0]),
+            value(one.linear_um[1]),
+        ]);
+    }
+    Section::new("One-cycle networks").table(table)
 }
 
 fn laps(found: &MachineContoured) -> Table {
@@ -239,7 +269,7 @@ fn places(found: &MachineContoured) -> Option<Section> {
     for one in &found.directions {
         for r in &one.reversals {
             peaks = peaks.row([
-                Cell::text(r.axis),
+                Cell::text(r.axis.clone()),
                 Cell::text(one.direction.clone()),
                 Cell::text(format!("{:.0}°", r.angle_deg)),
                 micro(r.peak_um),

@@ -1,6 +1,6 @@
 //! The page of a discovery: verdict, effects, gap, pictures.
 
-use axis_report::{Block, Cell, Figure, Notice, Page, Section, Series, Table, render};
+use axis_report::{Block, Cell, Figure, Notice, Page, Section, Series, Table, fixed, render};
 use axis_sim::Axis;
 use discrepancy::summary::SummaryFound;
 use discrepancy::{
@@ -138,7 +138,7 @@ fn effects(discovery: &Discovery) -> Section {
                 Cell::text(
                     ReadUnit::of_parameter(&p.name, &p.unit, p.value).said_within(p.value, p.ci95),
                 ),
-                Cell::text(format!("{:.1} %", 100.0 * effect.share_of_gap)),
+                Cell::text(format!("{} %", fixed(100.0 * effect.share_of_gap, 1))),
                 Cell::text(effect.indistinguishable_from.join(", ")),
                 Cell::text(format!("{:.5e} {}", p.value, p.unit)),
             ]);
@@ -211,8 +211,8 @@ fn gaps(discovery: &Discovery) -> Section {
         }
         table.note(match gap.stands_out() {
             true => format!(
-                "{:.1} % of the gap above the noise is gone.",
-                100.0 * gap.reduction
+                "{} % of the gap above the noise is gone.",
+                fixed(100.0 * gap.reduction, 1)
             ),
             false => "No channel exceeded its noise by more than a fifth.".to_owned(),
         })

@@ -1,6 +1,7 @@
 //! The page of measured frequency responses.
 
-use axis_report::{Cell, Figure, Notice, Page, Section, Series, Table};
+use axis_log::PlusMinus;
+use axis_report::{Cell, Figure, Notice, Page, Section, Series, Table, engineering};
 use axis_sim::Axis;
 use drive_loop::{MeasuredDrive, WithDeviation};
 
@@ -20,21 +21,19 @@ pub fn page(axis: &Axis, all: &[MeasuredDrive]) -> Page {
 }
 
 fn place(found: &MeasuredDrive) -> String {
-    format!(
-        "{} {}",
-        axis_sim::SixDigits(found.position),
-        found.position_unit
-    )
+    engineering(found.position, &found.position_unit, 4)
 }
 
 fn pair(of: WithDeviation, scale: f64, digits: usize) -> Cell {
     let (value, deviation) = (scale * of.value, scale * of.deviation);
-    Cell::text(format!("{value:.digits$} ± {deviation:.digits$}"))
+    let pair = PlusMinus::new(value, deviation, digits).to_string();
+    // The page's minus sign.
+    Cell::text(pair.replacen('-', "\u{2212}", usize::from(value < 0.0)))
 }
 
 fn margins(all: &[MeasuredDrive]) -> Section {
     let mut table = Table::new(
-        "Greatest sensitivity with the gains of the file, and delay beside the model's",
+        "Maximum sensitivity with the gains of the file, and delay beside the model's",
         ["load at", "from the command", "from the responses", "model", "position loop", "delay, ms"],
     )
     .note("From the command: its answer to the excitation is 1/(1 + L). From the responses: the file's controller with the measured drive. ± is a standard deviation.");
@@ -96,13 +95,17 @@ fn response(found: &MeasuredDrive) -> Section {
     let values: Vec<[f64; 2]> = counted.iter().map(|l| l.value).collect();
     let all_f: Vec<f64> = lines.iter().map(|l| l.frequency_hz).collect();
     let unit = format!("rad/s/{}", found.command_unit);
-    let size = Figure::new("Command to motor speed: size", "frequency", "size")
-        .units("Hz", unit)
-        .log_x()
-        .log_y()
-        .linked(FREQUENCY)
-        .series(sized("measured", &f, &values))
-        .series(sized("model", &all_f, &found.motor_speed_model).dashed());
+    let magnitude = Figure::new(
+        "Command to motor speed: magnitude",
+        "frequency",
+        "magnitude",
+    )
+    .units("Hz", unit)
+    .log_x()
+    .log_y()
+    .linked(FREQUENCY)
+    .series(sized("measured", &f, &values))
+    .series(sized("model", &all_f, &found.motor_speed_model).dashed());
     let phase = Figure::new("Command to motor speed: phase", "frequency", "phase")
         .units("Hz", "°")
         .log_x()
@@ -127,7 +130,7 @@ fn response(found: &MeasuredDrive) -> Section {
         .series(Series::line("deviation", all_f, share));
     Section::new(format!("Response with the load at {}", place(found)))
         .paragraph(sentence(&found.method))
-        .figure(size)
+        .figure(magnitude)
         .figure(phase)
         .figure(coherence)
         .figure(deviation)

@@ -4,9 +4,14 @@ use axis_report::{Cell, Figure, Mark, Notice, Page, Section, Series, Table};
 use drive_loop::{CornerMargins, LoopAnalysis, LoopCurves};
 
 use crate::commands::analyse::{compliance_unit, place};
+use crate::context::Context;
+use crate::program;
+use crate::results::Loops;
 
 /// Figures share the frequency.
 const FREQUENCY: &str = "frequency";
+/// Title of the section of margins.
+const MARGINS: &str = "The loop's margins";
 /// Nyquist's plot shows gains up to this one.
 const SHOWN: f64 = 3.0;
 
@@ -27,6 +32,41 @@ pub fn sections(found: &LoopAnalysis) -> Vec<Section> {
         sensitivity(found),
         compliance(found),
     ]
+}
+
+/// The section of the pipeline's report: margins of the model's loops, and the machine's in a line.
+pub fn of_pipeline(context: &Context, loops: &Loops) -> Section {
+    let found = match &loops.model {
+        Ok(found) => found,
+        Err(error) => {
+            let why = sentence(&error.to_string());
+            return Section::new(MARGINS).paragraph(why);
+        }
+    };
+    let section = margins(found).figure(sensitivity_figure(found));
+    let machine = match &loops.machine {
+        None => None,
+        Some(Ok(machine)) => Some(match machine.worst.sensitivity {
+            Some(most) => format!(
+                "On the machine, {}, the maximum sensitivity over the same cases is {most:.2}.",
+                context.machine.name
+            ),
+            None => format!(
+                "On the machine, {}, {} of {} cases are not stable.",
+                context.machine.name,
+                machine.worst.unstable,
+                machine.corners.len()
+            ),
+        }),
+        Some(Err(error)) => Some(sentence(&format!("of the machine: {error}"))),
+    };
+    let section = machine
+        .into_iter()
+        .fold(section, |section, line| section.paragraph(line));
+    section.paragraph(format!(
+        "These are the loops of the drive without compensation. {program} analyse shows them over the frequency; {program} tune finds gains within the limits.",
+        program = program::name()
+    ))
 }
 
 /// Margins of all corners.
@@ -58,11 +98,11 @@ pub fn margins(found: &LoopAnalysis) -> Section {
             others.row(others_of(found, corner)),
         ]
     });
-    let mut section = Section::new("The loop's margins");
+    let mut section = Section::new(MARGINS);
     section = match found.worst.sensitivity {
         Some(most) => section.notice(
             if most <= 1.605 { Notice::Good } else { Notice::Warn },
-            format!("The greatest sensitivity over {} cases is {most:.2}; 1.6 leaves a drive room for what the model lacks, from 2 on it rings.", found.corners.len()),
+            format!("The maximum sensitivity over {} cases is {most:.2}; 1.6 leaves a drive room for what the model lacks, from 2 on it rings.", found.corners.len()),
         ),
         None => section.notice(
             Notice::Warn,
@@ -158,7 +198,7 @@ fn bode(found: &LoopAnalysis) -> Section {
     let size = Figure::new("Open loop, cut at the command: gain", "frequency", "gain");
     let phase = Figure::new("Open loop, cut at the command: phase", "frequency", "phase");
     let nyquist = Figure::new("Nyquist's plot", "real part", "imaginary part")
-        .caption("The point −1 is where the loop would be unstable; its distance from the curve is the inverse of the greatest sensitivity.");
+        .caption("The point −1 is where the loop would be unstable; its distance from the curve is the inverse of the maximum sensitivity.");
     let speed = Figure::new(
         "Speed per set point of the speed controller",
         "frequency",
@@ -167,6 +207,7 @@ fn bode(found: &LoopAnalysis) -> Section {
     let mut size = size.units("Hz", "").log_x().log_y().linked(FREQUENCY);
     let mut phase = phase.units("Hz", "°").log_x().linked(FREQUENCY);
     let mut speed = speed.units("Hz", "").log_x().log_y().linked(FREQUENCY);
+    let mut has_speed = false;
     let mut nyquist = nyquist.series(Series::dots("−1", vec![-1.0], vec![0.0]));
     for curves in &found.curves {
         let f = || curves.frequency_hz.clone();
@@ -188,21 +229,31 @@ fn bode(found: &LoopAnalysis) -> Section {
                 near.iter().map(|v| v[1]).collect(),
             ));
         }
-        speed = speed.series(sized(
-            state(curves),
-            &curves.frequency_hz,
-            &curves.speed_followed,
-        ));
+        if !curves.speed_followed.is_empty() {
+            has_speed = true;
+            speed = speed.series(sized(
+                state(curves),
+                &curves.frequency_hz,
+                &curves.speed_followed,
+            ));
+        }
     }
-    Section::new("Open and closed loop")
+    let section = Section::new("Open and closed loop")
         .figure(size)
         .figure(phase)
-        .figure(nyquist)
-        .figure(speed)
+        .figure(nyquist);
+    match has_speed {
+        true => section.figure(speed),
+        false => section,
+    }
+}
+
+fn sensitivity(found: &LoopAnalysis) -> Section {
+    Section::new("Sensitivity").figure(sensitivity_figure(found))
 }
 
 /// 1/|1 + L| of both cuts.
-fn sensitivity(found: &LoopAnalysis) -> Section {
+fn sensitivity_figure(found: &LoopAnalysis) -> Figure {
     let mut figure = Figure::new("Sensitivity", "frequency", "1/|1 + L|")
         .units("Hz", "")
         .log_x()
@@ -221,7 +272,7 @@ fn sensitivity(found: &LoopAnalysis) -> Section {
             ));
         }
     }
-    Section::new("Sensitivity").figure(figure)
+    figure
 }
 
 fn compliance(found: &LoopAnalysis) -> Section {

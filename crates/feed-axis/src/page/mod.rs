@@ -19,7 +19,7 @@ pub mod robustness;
 mod tracking;
 
 use axis_pipeline::strategies::{NETWORK, NETWORK_LUGRE, StrategyKind};
-use axis_report::{Block, Cell, KeyValues, Mark, Notice, Page, Section, Table};
+use axis_report::{Block, Cell, KeyValues, Mark, Notice, Page, Section, Table, fixed};
 use axis_sim::mechanism::SolutionMethod;
 
 use crate::context::Context;
@@ -45,6 +45,7 @@ pub fn page(context: &Context, results: &Results) -> Page {
     page.section(mechanics::friction(context, results))
         .section(mechanics::vibration(results))
         .section(mechanics::modes(results))
+        .section(loops::of_pipeline(context, &results.loops))
         .section(network::study(results))
         .section(settings(context, results))
 }
@@ -78,8 +79,8 @@ fn overview(context: &Context, results: &Results) -> Section {
             Cell::number(none.max, 2),
             Cell::number(network.max, 2),
             Cell::number(both.max, 2),
-            Cell::text(format!("{peak:.1} %")),
-            Cell::text(format!("{mean:.1} %")),
+            Cell::text(format!("{} %", fixed(peak, 1))),
+            Cell::text(format!("{} %", fixed(mean, 1))),
         ]);
     }
     let machine = if context.has_machine {

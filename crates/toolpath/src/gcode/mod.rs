@@ -8,6 +8,7 @@
 //! | G90, G91 | positions absolute (at first), or from the last position |
 //! | G90.1, G91.1 | centres absolute, or from the arc's begin (at first) |
 //! | X Y Z; I J K; R | position; centre; radius, negative for the longer of the two arcs |
+//! | G61; G64 P | corners stay (at first); blends of lines within P of each corner, for lines of one feed ([`PathBlending`](crate::PathBlending)) |
 //! | F | feed per minute, kept until the next (G94, which is accepted) |
 //! | N, comments, % | without effect |
 //! | M2, M30 | end |
@@ -17,13 +18,13 @@
 //! used for the words: its 0.7.0 keeps numbers in single precision, 30 nm at 1 m, and panics at a
 //! command number above 429 496 729.
 
+mod arcs;
 mod words;
 
-use std::f64::consts::TAU;
-
+use crate::blending::blended;
 use crate::error::ToolpathError;
 use crate::vector::{norm, sub};
-use crate::{Arc, Line, Path, PathSegment, PathTolerances};
+use crate::{Blend, Line, Path, PathSegment, PathTolerances};
 use words::{Word, words};
 
 /// Why a program was refused.
@@ -90,8 +91,22 @@ pub fn read(
     start: [f64; 3],
     tolerances: &PathTolerances,
 ) -> Result<Vec<ProgramRun>, GcodeError> {
+    read_blended(text, start, tolerances, (Blend::Quintic, None))
+}
+
+/// As [`read`], with blends of that shape, and the tolerance (m) that holds before the first G61 or G64; none to stop at corners.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_blended(
+    text: &str,
+    start: [f64; 3],
+    tolerances: &PathTolerances,
+    (shape, blending): (Blend, Option<f64>),
+) -> Result<Vec<ProgramRun>, GcodeError> {
     let mut state = State {
         position: start,
+        blending,
         ..State::default()
     };
     let mut moves = Vec::new();
@@ -109,12 +124,14 @@ pub fn read(
         let count = moves[i..].iter().take_while(|m| m.feed == feed).count();
         let run = &moves[i..i + count];
         let lines = (run[0].line, run[count - 1].line);
-        let segments = run.iter().map(|m| m.segment.clone()).collect();
-        let path =
-            Path::with_tolerances(segments, tolerances).map_err(|source| GcodeError::Path {
-                line: lines.0,
-                source,
-            })?;
+        let segments: Vec<_> = run.iter().map(|m| m.segment.clone()).collect();
+        let within: Vec<_> = run.iter().map(|m| m.blending).collect();
+        let segments = blended(&segments, &within, shape);
+        let path = segments.and_then(|segments| Path::with_tolerances(segments, tolerances));
+        let path = path.map_err(|source| GcodeError::Path {
+            line: lines.0,
+            source,
+        })?;
         runs.push(ProgramRun { path, feed, lines });
         i += count;
     }
@@ -124,6 +141,8 @@ pub fn read(
 struct Move {
     segment: PathSegment<3>,
     feed: Option<f64>,
+    /// Tolerance of the blend at its end, m.
+    blending: Option<f64>,
     line: usize,
 }
 
@@ -138,6 +157,7 @@ struct State {
     absolute: bool,
     absolute_centre: bool,
     feed: Option<f64>,
+    blending: Option<f64>,
 }
 
 impl Default for State {
@@ -150,6 +170,7 @@ impl Default for State {
             absolute: true,
             absolute_centre: false,
             feed: None,
+            blending: None,
         }
     }
 }
@@ -185,7 +206,7 @@ impl Block<'_> {
     }
 }
 
-const KNOWN: &str = "G0 to G3, G17 to G21, G90, G91, G90.1, G91.1 or G94";
+const KNOWN: &str = "G0 to G3, G17 to G21, G61, G64 P, G90, G91, G90.1, G91.1 or G94";
 
 impl State {
     /// Takes one line; `true` at the end of the program.
@@ -202,13 +223,13 @@ impl State {
             match word.letter {
                 'G' => {}
                 'M' => end |= word.value == 2.0 || word.value == 30.0,
-                'X' | 'Y' | 'Z' | 'I' | 'J' | 'K' | 'R' | 'F' | 'N' | 'S' | 'T' if twice => {
+                'X' | 'Y' | 'Z' | 'I' | 'J' | 'K' | 'R' | 'F' | 'N' | 'P' | 'S' | 'T' if twice => {
                     return block.refuse(&word.text, "each letter but G and M once in a line");
                 }
-                'X' | 'Y' | 'Z' | 'I' | 'J' | 'K' | 'R' | 'F' | 'N' | 'S' | 'T' => {}
+                'X' | 'Y' | 'Z' | 'I' | 'J' | 'K' | 'R' | 'F' | 'N' | 'P' | 'S' | 'T' => {}
                 _ => {
                     return block
-                        .refuse(&word.text, "one of the letters F G I J K M N R S T X Y Z");
+                        .refuse(&word.text, "one of the letters F G I J K M N P R S T X Y Z");
                 }
             }
         }
@@ -230,7 +251,7 @@ impl State {
 
     /// The G words, of each group at most one.
     fn modes(&mut self, block: &Block) -> Result<(), GcodeError> {
-        let mut seen: Vec<u8> = Vec::new();
+        let (mut seen, mut blends): (Vec<u8>, _) = (Vec::new(), None);
         for word in block.words.iter().filter(|w| w.letter == 'G') {
             // Tenths: 90.1 is 901.
             let tenths = word.value * 10.0;
@@ -266,6 +287,10 @@ impl State {
                     5
                 }
                 940 => 6,
+                mode @ (610 | 640) => {
+                    blends = Some(mode == 640);
+                    7
+                }
                 _ => return block.refuse(&word.text, KNOWN),
             };
             if seen.contains(&group) {
@@ -273,7 +298,30 @@ impl State {
             }
             seen.push(group);
         }
+        match blends {
+            // Here, as a unit may stand behind it in its line.
+            Some(true) => self.blending = Some(self.tolerance(block)?),
+            _ if block.get('P').is_some() => {
+                return block.refuse(&block.text("P"), "G64 in the same line");
+            }
+            Some(false) => self.blending = None,
+            None => (),
+        }
         Ok(())
+    }
+
+    /// The tolerance of a G64, m.
+    fn tolerance(&self, block: &Block) -> Result<f64, GcodeError> {
+        // Without P, LinuxCNC cuts corners as far as speed asks for.
+        let valid = "G64 with P, a tolerance above 0";
+        let Some(value) = block.get('P') else {
+            return block.refuse("G64", valid);
+        };
+        let tolerance = value * self.unit;
+        match (1e-9..=1.0).contains(&tolerance) {
+            true => Ok(tolerance),
+            false => block.refuse(&block.text("GP"), valid),
+        }
     }
 
     fn go(
@@ -316,143 +364,10 @@ impl State {
         moves.extend(segment.map(|segment| Move {
             segment,
             feed,
+            blending: self.blending,
             line: block.line,
         }));
         self.position = target;
         Ok(())
-    }
-
-    fn arc(
-        &self,
-        block: &Block,
-        target: [f64; 3],
-        counterclockwise: bool,
-    ) -> Result<PathSegment<3>, GcodeError> {
-        let [a, b, c] = self.plane;
-        let start = [self.position[a], self.position[b]];
-        let end = [target[a], target[b]];
-        let sign = if counterclockwise { 1.0 } else { -1.0 };
-        let centre = match block.get('R') {
-            Some(radius) => self.centre_of_radius(block, (start, end), radius * self.unit, sign)?,
-            None => self.centre_of_words(block, (start, end))?,
-        };
-        let spoke = sub(&start, &centre);
-        let last = sub(&end, &centre);
-        let turn = libm::atan2(
-            spoke[0] * last[1] - spoke[1] * last[0],
-            spoke[0] * last[0] + spoke[1] * last[1],
-        );
-        let mut sweep = sign * turn;
-        if start == end {
-            sweep = TAU;
-        } else if sweep <= 0.0 {
-            sweep += TAU;
-        }
-        let (mut middle, mut towards, mut advance) = (self.position, [0.0; 3], [0.0; 3]);
-        (middle[a], middle[b]) = (centre[0], centre[1]);
-        (towards[a], towards[b]) = (-sign * spoke[1], sign * spoke[0]);
-        advance[c] = target[c] - self.position[c];
-        let arc = Arc::new(middle, self.position, towards, sweep);
-        let arc = if advance[c] == 0.0 {
-            arc
-        } else {
-            arc.and_then(|arc| arc.helix(advance))
-        };
-        Ok(arc
-            .map_err(|source| GcodeError::Path {
-                line: block.line,
-                source,
-            })?
-            .into())
-    }
-
-    /// The centre of I, J and K, moved onto the line of equal distance from both ends.
-    fn centre_of_words(
-        &self,
-        block: &Block,
-        (start, end): ([f64; 2], [f64; 2]),
-    ) -> Result<[f64; 2], GcodeError> {
-        let letters = ['I', 'J', 'K'];
-        let normal = letters[self.plane[2]];
-        if block.get(normal).is_some() {
-            return block.refuse(
-                &block.text("IJK"),
-                "the two letters of the plane's axes alone",
-            );
-        }
-        let given = [0, 1].map(|k| block.get(letters[self.plane[k]]));
-        if given == [None; 2] {
-            return block.refuse(&block.text("GXYZ"), "a centre (I J K) or a radius (R)");
-        }
-        let centre: [f64; 2] = std::array::from_fn(|k| match (given[k], self.absolute_centre) {
-            (Some(value), true) => value * self.unit,
-            (Some(value), false) => start[k] + value * self.unit,
-            // An absolute centre has both coordinates, a relative one is zero off in the other.
-            (None, _) => start[k],
-        });
-        if self.absolute_centre && given.contains(&None) {
-            return block.refuse(
-                &block.text("IJK"),
-                "both letters of the plane's axes with G90.1",
-            );
-        }
-        if start == end {
-            return Ok(centre);
-        }
-        let (begin, last) = (norm(&sub(&start, &centre)), norm(&sub(&end, &centre)));
-        // False for a NaN too.
-        let holds = (begin - last).abs() <= RADIUS_TOLERANCE;
-        if !holds {
-            let (line, word) = (block.line, block.text("IJK"));
-            return Err(GcodeError::Radii {
-                line,
-                word,
-                begin,
-                end: last,
-            });
-        }
-        let chord = sub(&end, &start);
-        let middle: [f64; 2] = std::array::from_fn(|k| 0.5 * (start[k] + end[k]));
-        let offset = sub(&centre, &middle);
-        let size = chord[0] * chord[0] + chord[1] * chord[1];
-        let along = (offset[0] * chord[0] + offset[1] * chord[1]) / size;
-        Ok(std::array::from_fn(|k| centre[k] - along * chord[k]))
-    }
-
-    fn centre_of_radius(
-        &self,
-        block: &Block,
-        (start, end): ([f64; 2], [f64; 2]),
-        radius: f64,
-        sign: f64,
-    ) -> Result<[f64; 2], GcodeError> {
-        if block.words.iter().any(|w| "IJK".contains(w.letter)) {
-            return block.refuse(
-                &block.text("IJKR"),
-                "a centre (I J K) or a radius (R), not both",
-            );
-        }
-        let chord = sub(&end, &start);
-        let half = 0.5 * norm(&chord);
-        // False for a NaN too.
-        let holds = half > 0.0;
-        if !holds {
-            return block.refuse(&block.text("R"), "a centre (I J K) for a full circle");
-        }
-        // False for a NaN too.
-        let holds = radius.abs() >= half - RADIUS_TOLERANCE;
-        if !holds {
-            return block.refuse(
-                &block.text("R"),
-                "a radius of at least half of the distance to the end",
-            );
-        }
-        let height = (radius * radius - half * half).max(0.0).sqrt();
-        // The shorter arc has its centre on the side to which it turns.
-        let side = sign * height.copysign(height * radius) / (2.0 * half);
-        Ok([
-            0.5 * (start[0] + end[0]) - side * chord[1],
-            0.5 * (start[1] + end[1]) + side * chord[0],
-        ])
     }
 }

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use axis_pipeline::strategies::StrategyKind;
+use axis_pipeline::strategies::{Predictors, StrategyKind};
 use clap::Args;
 use compensator::GuardLimits;
 use controller_export::{EXPORTED, ExportError, ExportedController, NamedText};
@@ -61,6 +61,13 @@ impl Results {
             quick: self.quick,
         };
         common.open()
+    }
+
+    /// What the strategy is made of.
+    pub fn predictors(&self, strategy: &StrategyKind) -> Result<Predictors> {
+        // Before results are asked for, which would not help.
+        controller_export::exportable(strategy.name).map_err(refused)?;
+        validate::predictors(&self.open()?, strategy.needs)
     }
 }
 

@@ -86,6 +86,10 @@ fn of_log(name: &str, seen: &SeenLog, page: Page) -> Page {
     .section(figures)
 }
 
+/// Share of a channel's greatest value below which noise is that of rounding: files have nine digits
+/// or more.
+const ROUNDING: f64 = 1e-9;
+
 fn table(seen: &SeenLog) -> Table {
     let heads = [
         "channel",
@@ -99,6 +103,12 @@ fn table(seen: &SeenLog) -> Table {
         "filtered from",
         "delay",
     ];
+    // Of a channel without noise what is left is rounding: it says nothing, and in a unit of its own.
+    let noise = |c: &ChannelQuality| {
+        let greatest = c.range[0].abs().max(c.range[1].abs());
+        let level = c.noise.map(|n| n.level);
+        level.filter(|level| *level > ROUNDING * greatest)
+    };
     let optional = |value: Option<f64>, unit: &str| value.map_or(Cell::Missing, |v| short(v, unit));
     let row = |table: Table, c: &ChannelQuality| {
         table.row([
@@ -107,7 +117,7 @@ fn table(seen: &SeenLog) -> Table {
             short(c.range[0], &c.unit),
             short(c.range[1], &c.unit),
             Cell::text(c.missing[0].to_string()),
-            optional(c.noise.map(|n| n.level), &c.unit),
+            optional(noise(c), &c.unit),
             optional(c.quantum.map(|q| q.step), &c.unit),
             optional(c.hold.map(|h| h.period), "s"),
             optional(c.corner, "Hz"),

@@ -1,8 +1,8 @@
-//! What `fmi2Component` and `fmi2CallbackFunctions` are.
+//! What `fmi3Instance`, `fmi2Component` and `fmi2CallbackFunctions` are.
 
 use safer_ffi::prelude::*;
 
-use super::access::{Access, Lent};
+use crate::access::{Access, Lent};
 use crate::call::{Address, Status};
 use crate::instance::Instance;
 use crate::log::Logger;
@@ -29,6 +29,14 @@ pub struct Component {
 }
 
 const _: () = assert!(size_of::<Made>() == size_of::<Component>());
+
+/// What an exported function is given as `fmi3Instance` or `fmi2Component`.
+pub type ComponentAt<'a> = Option<&'a mut Component>;
+
+/// The instance of a component.
+pub fn of(component: ComponentAt<'_>) -> Option<&mut Instance> {
+    component.map(|component| &mut component.instance)
+}
 
 impl Made {
     pub fn of(instance: Instance) -> repr_c::Box<Self> {
