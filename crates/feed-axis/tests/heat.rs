@@ -196,7 +196,7 @@ fn a_fitted_axis_file_predicts_the_log() {
     let out = folder.path().join("fitted.toml").display().to_string();
     let fitted = found(&["--axis", SCREW, "--fit", &log, "--out", &out]);
     assert_eq!(fitted["readings"], 18);
-    assert_eq!(fitted["held_out_readings"], 6);
+    assert_eq!(fitted["held_out_readings"], 7);
     let error = |of: &serde_json::Value| of["greatest_um"].as_f64().unwrap();
     assert!(error(&fitted["assumed_numbers"]) > 3.0, "{fitted}");
     assert!(error(&fitted["fitted_numbers"]) < 0.5, "{fitted}");
@@ -206,7 +206,7 @@ fn a_fitted_axis_file_predicts_the_log() {
         "{text}"
     );
     assert!(
-        text.contains("Held out: the last 25 %, 6 readings"),
+        text.contains("Held out: the last 25 %, 7 readings"),
         "{text}"
     );
     // The file is an axis file, and predicts what it was fitted to.
@@ -311,7 +311,7 @@ fn moves_are_made_on_an_axis_that_warms_up() {
     assert!(output.status.success(), "{output:?}");
     let made: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let max = |pass: usize, of: &str| {
-        made["passes"][pass]["error_um"][of]["max"]
+        made["passes"][pass]["errors_um"][of]["max"]
             .as_f64()
             .unwrap()
     };
