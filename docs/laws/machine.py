@@ -1,4 +1,4 @@
-"""Slides that this project's search has not seen: rigid or of two masses, with friction of other laws, simulated by
+"""Axes that this project's search has not seen: rigid or of two masses, with friction of other laws, simulated by
 explicit steps of 25 µs and logged with coloured noise, quantisation and jitter. Shares no code with the crates."""
 
 import math
@@ -7,7 +7,7 @@ import numpy as np
 
 STEP = 2.5e-5  # s
 
-# N, N·s/m, m, 1/s, N·s/m, s, Hz, N per unit of the log, N, kg, m, m/s
+# N, N·s/m, m, 1/s, N·s/m, s, Hz, N per unit of the log, N, kg, m, m/s; "fall": Stribeck friction, N, and its speed, m/s
 LINEAR_MOTOR = {
     "axis": "linear-motor", "channel": "iq_a", "mass": 40.0, "coulomb": 25.0, "viscous": 50.0, "presliding": 10e-6,
     "kv": 83.0, "speed_gain": 180 * 93.0, "integral_time": 0.01, "rate": 10000, "per_unit": 93.0, "most": 1488.0,
@@ -28,7 +28,29 @@ RACK = {
               [(0.5, 0.8, 2.5), (-0.25, 0.3, 1.5), (0.2, 0.5, 2), (-0.05, 0.05, 1)],
               [(0.55, 0.9, 2.8), (-0.1, 0.2, 1.5), (-0.2, 0.6, 2)]],
 }
-MACHINES = [LINEAR_MOTOR, RACK]
+TRAVEL = 0.01 / (2 * math.pi)  # of the screw, m a radian
+SCREW = {
+    "axis": "screw-datasheet", "channel": "iq_a", "mass": 515.0, "coulomb": 0.6757 / TRAVEL, "viscous": 1131.0, "presliding": 5e-6,
+    "kv": 46.7, "speed_gain": 1.0625 / TRAVEL**2, "integral_time": 0.0952, "rate": 10000, "per_unit": 1.641 / TRAVEL,
+    "most": 15 * 1.641 / TRAVEL, "acceleration_forward": 0.0, "resolution": 1e-8, "speed_noise": 4e-6, "onset": 2e-4, "middle": 0.75,
+    "start": 0.6, "stiffness": 5e7, "motor_mass": 0.0069 / TRAVEL**2, "damping": 500.0, "lag": 1 / (2 * math.pi * 106), "magnets": 0.01,
+    "noise": 0.1, "fall": (0.0896 / TRAVEL, 4.317e-3), "bit": 30 / 2**14,
+    "moves": [[(0.25, 0.15, 1), (-0.15, 0.08, 0.8), (0.05, 0.02, 0.5), (-0.1, 0.05, 0.5)],
+              [(0.2, 0.12, 0.9), (-0.15, 0.2, 1.2), (0.1, 0.06, 1), (-0.03, 0.01, 0.3)],
+              [(0.3, 0.18, 1.1), (-0.1, 0.04, 0.6), (-0.1, 0.1, 0.8)]],
+}
+# rad and N·m at the arm; its encoder is on the motor, set with the arm hanging down.
+JOINT = {
+    "axis": "joint", "channel": "torque_ref_n_m", "mass": 2.0, "coulomb": 6.0, "viscous": 8.0, "presliding": 3e-4, "kv": 6.0,
+    "speed_gain": 200.0, "integral_time": 0.05, "rate": 4000, "per_unit": 100.0, "most": 250.0, "acceleration_forward": 0.0,
+    "resolution": 2 * math.pi / 16384 / 100, "speed_noise": 3e-5, "onset": 3e-3, "middle": 0.0, "start": -0.5236, "stiffness": 2.5e4,
+    "motor_mass": 1.0, "damping": 5.0, "lag": 1 / (2 * math.pi * 500), "delay": 250e-6, "magnets": 2 * math.pi / 600, "noise": 0.004,
+    "fall": (1.0, 0.0349), "gravity": 60.0, "error": 1.454e-4, "ratio": 100, "bit": 5 / 2**14,
+    "moves": [[(1.2, 1.5, 5), (-0.7, 0.6, 3), (0.3, 0.15, 2), (-0.5, 0.3, 2)],
+              [(0.9, 1.1, 4), (-0.6, 0.35, 3), (0.4, 0.7, 4), (-0.1, 0.06, 1)],
+              [(1.0, 1.3, 4.5), (-0.3, 0.2, 2), (-0.5, 0.8, 3)]],
+}
+MACHINES = [LINEAR_MOTOR, RACK, SCREW, JOINT]
 
 
 def reference(start, moves):
@@ -87,10 +109,10 @@ def load(hidden, m, x, v, t):
 LAWS = {
     "cogging": lambda h, u, x, v, t: h[0] * math.sin(2 * math.pi * x / h[1] + h[2]),
     "cyclic": lambda h, u, x, v, t: h[0] * math.sin(2 * math.pi * t * h[1] + 0.4),
-    "x2": lambda h, u, x, v, t: h * (u / 0.2) ** 2,
-    "xv": lambda h, u, x, v, t: h * u / 0.2 * v,
-    "vt": lambda h, u, x, v, t: h * math.tanh(v / 0.3),
-    "v3": lambda h, u, x, v, t: h * v * abs(v),
+    "x2": lambda h, u, x, v, t: h[0] * (u / h[1]) ** 2,
+    "xv": lambda h, u, x, v, t: h[0] * u * v / h[1],
+    "vt": lambda h, u, x, v, t: h[0] * math.tanh(v / h[1]),
+    "v3": lambda h, u, x, v, t: h[0] * v * abs(v) / h[1] ** 2,
     "drift": lambda h, u, x, v, t: h * (1 - math.exp(-t / 2)),
     "lawx": lambda h, u, x, v, t: h[0] * math.tanh(u / h[1]),
 }
@@ -105,14 +127,18 @@ def simulate(m, moves, hidden, onset, random):
     every = round(1 / (m["rate"] * STEP))
     x = motor = wanted[0]
     v = motor_v = 0.0
-    integral = command = acting = hidden.get("load", 0.0)
+    gravity, error, at_motor = m.get("gravity", 0.0), m.get("error", 0.0), "ratio" in m
+    fall, fall_speed = m.get("fall", (0.0, 1.0))
+    integral = command = acting = hidden.get("load", 0.0) + gravity * math.cos(x)
+    if gravity:
+        motor += integral / m["stiffness"]
     waiting = [command] * round(m.get("delay", 0.0) / STEP)
     xs, us = np.empty(len(wanted)), np.empty(len(wanted))
     stribeck, bump = hidden.get("stribeck"), hidden.get("bump")
     for k, target in enumerate(wanted):
         t = k * STEP
         if k % every == 0:
-            off = target - round(x / m["resolution"]) * m["resolution"]
+            off = target - round((motor if at_motor else x) / m["resolution"]) * m["resolution"]
             shown = (motor_v if m["stiffness"] else v) - random.standard_normal() * m["speed_noise"]
             slow = m["kv"] * off + speed[k] - shown
             integral += m["speed_gain"] / m["integral_time"] * slow * every * STEP
@@ -126,20 +152,22 @@ def simulate(m, moves, hidden, onset, random):
         level = m["coulomb"] * (1 + math.copysign(hidden.get("asym", 0.0), v * hidden.get("asym", 0.0)))
         if bump:
             level += bump[0] * math.exp(-0.5 * ((x - bump[1]) / bump[2]) ** 2)
-        force = level * friction.share(v) + m["viscous"] * v
+        force = (level + fall * math.exp(-(v / fall_speed) ** 2)) * friction.share(v) + m["viscous"] * v
         if stribeck:
             force += stribeck[0] * math.exp(-abs(v) / stribeck[1]) * math.tanh(v / m["onset"])
         force *= 1 - hidden.get("thermal", 0.0) * (1 - math.exp(-t / 3))
-        force += load(hidden, m, x, v, t)
+        force += load(hidden, m, x, v, t) + gravity * math.cos(x)
+        # A current is logged as it flows, anything else as it is commanded.
+        xs[k], us[k] = motor if at_motor else x, acting if m["channel"] == "iq_a" else command
         if m["stiffness"]:
-            spring = m["stiffness"] * (motor - x) + m["damping"] * (motor_v - v)
+            twist = motor - x + error * math.sin(2 * m["ratio"] * motor) if error else motor - x
+            spring = m["stiffness"] * twist + m["damping"] * (motor_v - v)
             motor_v += (acting - spring) / m["motor_mass"] * STEP
             motor += motor_v * STEP
             v += (spring - force) / m["mass"] * STEP
         else:
             v += (acting - force) / m["mass"] * STEP
         x += v * STEP
-        xs[k], us[k] = x, command
     return xs, us
 
 
@@ -166,7 +194,7 @@ def logged(m, xs, us, noise, random):
     even = index * STEP
     taken = even + noise.get("jitter", 0.0) / noise["rate"] * random.standard_normal(len(index))
     steps = np.arange(len(xs)) * STEP
-    x = np.round(np.interp(taken, steps, xs) / m["resolution"]) * m["resolution"]
+    x = np.round(np.interp(taken, steps, xs) / m["resolution"]) * m["resolution"] * m.get("ratio", 1)
     effort = np.interp(taken, steps, us) / m["per_unit"]
     effort += noise["level"] * coloured(noise["colour"], len(effort), random)
     return even, x, np.round(effort / noise["bit"]) * noise["bit"]

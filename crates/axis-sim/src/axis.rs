@@ -350,6 +350,13 @@ impl Axis {
         free.map(|known| self.tolerances.of_known(known)).collect()
     }
 
+    /// Which of [`Axis::known`] are angles: off by an angle in rad, and not by a share of their value.
+    pub fn known_angles(&self) -> Vec<bool> {
+        let all = self.may_be_known().into_iter();
+        let free = all.filter(|known| self.may_differ(known));
+        free.map(Known::is_angle).collect()
+    }
+
     /// Whether a parameter may be off at all.
     fn may_differ(&self, known: &Known) -> bool {
         let named = self.tolerances.by_name.contains_key(known.name);

@@ -1,5 +1,6 @@
 //! Blends in place of the corners of a path.
 
+use crate::error::positive;
 use crate::{Blend, Line, Path, PathSegment, ToolpathError};
 
 /// How the corners of a path are blended.
@@ -28,6 +29,7 @@ impl<const D: usize> Path<D> {
     /// # Errors
     /// [`ToolpathError::Invalid`] for a tolerance that is not from 1e-9 to 1e9 m.
     pub fn blended(&self, blending: &PathBlending) -> Result<Self, ToolpathError> {
+        positive("tolerance of a blend", blending.tolerance, "m")?;
         let all = vec![Some(blending.tolerance); self.segments().len()];
         Self::new(blended(self.segments(), &all, blending.shape)?)
     }

@@ -76,8 +76,7 @@ fn what_is_no_corner_of_lines_stays() {
         tolerance: 0.0,
         ..blending
     });
-    // No corner is blended here, so nothing asks for a tolerance.
-    assert!(refused.is_ok());
+    assert!(refused.unwrap_err().to_string().contains("tolerance"));
     let corner = Path::polyline(&[[0.0, 0.0], [0.02, 0.0], [0.02, 0.02]]).unwrap();
     let refused = corner.blended(&PathBlending {
         tolerance: -1.0,

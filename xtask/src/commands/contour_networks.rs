@@ -67,7 +67,9 @@ pub fn networks(bench: &Bench) -> Result<Measured> {
             let worst = laps.map(|lap| lap.contour_error_um).fold(0.0, f64::max);
             Ok(format!("{worst:.3}"))
         });
-        let worst: Vec<String> = worst.collect::<Result<_>>()?;
+        // In order, so that of several errors the first one is said.
+        let worst: Vec<Result<String>> = worst.collect();
+        let worst: Vec<String> = worst.into_iter().collect::<Result<_>>()?;
         words.push(format!("{}: {}", kind.label, worst.join(", ")));
     }
     let networks = results.networks(strategy("network")?, &file)?;
@@ -85,7 +87,7 @@ pub fn networks(bench: &Bench) -> Result<Measured> {
         found: words.join("; "),
         met: None,
         note: format!(
-            "{}. The network predicts one cycle, and what it predicts is nearly what the kinematics of that cycle give",
+            "{}. The network predicts one cycle",
             shown.collect::<Vec<_>>().join("; ")
         ),
     })

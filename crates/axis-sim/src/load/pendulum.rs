@@ -19,7 +19,8 @@ pub(super) static KIND: PartKind<dyn Load> = PartKind {
         Known::by("gravity_torque", |v, by| v.scale("torque", by)),
         // An encoder's zero is set by a stop, a mark or a level: to half a degree, not to a milliradian.
         Known::by("hanging_angle", |v, by| v.shift("hanging_at", by - 1.0))
-            .with_own_tolerance(0.01, None),
+            .with_own_tolerance(0.01, None)
+            .as_angle(),
     ],
     build: |v| {
         Ok(Arc::new(Pendulum {

@@ -37,7 +37,8 @@ pub(super) static KIND: PartKind<dyn Mechanism> = PartKind {
             v.shift("kinematic_error_phase", by - 1.0);
         })
         .with_own_tolerance(PI, None)
-        .of("kinematic_error"),
+        .of("kinematic_error")
+        .as_angle(),
     ],
     build,
 };

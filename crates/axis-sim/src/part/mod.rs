@@ -113,6 +113,7 @@ pub struct Known {
     exact: bool,
     own_tolerance: Option<(f64, Option<Role>)>,
     of: Option<&'static str>,
+    is_angle: bool,
 }
 
 impl Known {
@@ -124,6 +125,7 @@ impl Known {
             exact: false,
             own_tolerance: None,
             of: None,
+            is_angle: false,
         }
     }
 
@@ -149,6 +151,7 @@ impl Known {
             exact: false,
             own_tolerance: None,
             of: None,
+            is_angle: false,
         }
     }
 
@@ -162,6 +165,20 @@ impl Known {
             own_tolerance: Some((share, covered_by)),
             ..self
         }
+    }
+
+    /// An angle, which has no size: what it is off by is no share of it but an angle in rad, with tolerances
+    /// likewise.
+    pub const fn as_angle(self) -> Self {
+        Self {
+            is_angle: true,
+            ..self
+        }
+    }
+
+    /// Whether what it is off by is an angle, rad, and no share of its value ([`Known::as_angle`]).
+    pub fn is_angle(&self) -> bool {
+        self.is_angle
     }
 
     /// A parameter of what stands under `key`: there is none where that is 0 or left out.

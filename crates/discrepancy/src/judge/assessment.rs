@@ -1,5 +1,8 @@
 //! What the first screen of a report needs beside the numbers: costs, confidence, remedies.
 
+use std::f64::consts::PI;
+
+use axis_log::never_zero;
 use axis_sim::effects::{Effect, EffectParameter};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -124,9 +127,26 @@ impl Confidence {
 }
 
 impl Recalibrated {
-    /// Whether it was moved as far as its tolerance lets it.
+    /// Whether it was moved as far as its tolerance lets it; an angle of which nothing is known has no edge.
     pub fn is_at_edge(&self) -> bool {
-        self.tolerance > 0.0 && self.share.abs() >= EDGE * self.tolerance
+        let is_any = self.is_angle && self.tolerance >= EDGE * PI;
+        self.tolerance > 0.0 && !is_any && self.share.abs() >= EDGE * self.tolerance
+    }
+
+    /// By how much it was moved, with its unit.
+    pub fn moved(&self) -> String {
+        match self.is_angle {
+            true => format!("{:+.3}°", self.share.to_degrees()),
+            false => format!("{:+.2} %", 100.0 * self.share),
+        }
+    }
+
+    /// Its tolerance, with its unit.
+    pub fn within(&self) -> String {
+        match self.is_angle {
+            true => format!("{}°", never_zero(self.tolerance.to_degrees(), 3)),
+            false => format!("{} %", never_zero(100.0 * self.tolerance, 2)),
+        }
     }
 }
 

@@ -260,10 +260,12 @@ pub fn judged(
     let recalibrated: Vec<Recalibrated> = (machine.known().into_iter())
         .zip(&full.shares)
         .zip(tolerances(machine))
-        .map(|((name, &share), tolerance)| Recalibrated {
+        .zip(machine.known_angles())
+        .map(|(((name, &share), tolerance), is_angle)| Recalibrated {
             name: shown(name),
             share,
             tolerance,
+            is_angle,
         })
         .collect();
     let refused = refused.map(refused_effects);

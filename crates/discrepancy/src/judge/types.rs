@@ -226,10 +226,13 @@ pub struct NextExperiment {
 pub struct Recalibrated {
     /// Name.
     pub name: String,
-    /// Share of its value by which it was moved.
+    /// Share of its value by which it was moved; of an angle that angle, rad.
     pub share: f64,
-    /// Tolerance as a share.
+    /// Tolerance, likewise.
     pub tolerance: f64,
+    /// Whether it is an angle.
+    #[serde(default)]
+    pub is_angle: bool,
 }
 
 /// Of files from before there was another way.

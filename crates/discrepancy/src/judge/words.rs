@@ -1,6 +1,5 @@
 //! A discovery in sentences and in the units of engineers, alike on every screen.
 
-use axis_log::never_zero;
 use axis_sim::TRANSMISSION_ERROR;
 use axis_sim::effects::Effect;
 
@@ -210,8 +209,7 @@ fn sure(discovery: &Discovery) -> Vec<String> {
     lines.extend(discovery.figures.sentence());
     lines.push(answer(&discovery.answer).to_owned());
     let edges = confidence.at_edge.iter().map(|k| {
-        let [share, tolerance] = [k.share, k.tolerance].map(|v| 100.0 * v);
-        format!("{} is at the edge of its tolerance ({share:+.2} % of ±{} %): it may stand for something else. Measure it, or widen its tolerance.", k.name, never_zero(tolerance, 2))
+        format!("{} is at the edge of its tolerance ({} of ±{}): it may stand for something else. Measure it, or widen its tolerance.", k.name, k.moved(), k.within())
     });
     lines.extend(edges);
     let wide = confidence.wide.iter();

@@ -102,6 +102,12 @@ struct Pair {
     compensated: Figures,
 }
 
+impl Pair {
+    fn of(none: Figures, compensated: Figures) -> Self {
+        Self { none, compensated }
+    }
+}
+
 /// Makes the moves.
 pub fn run(context: &Context, options: &Options, kind: &'static StrategyKind) -> Result<()> {
     let motions: Vec<NamedMotion> = options
@@ -146,16 +152,10 @@ pub fn run(context: &Context, options: &Options, kind: &'static StrategyKind) ->
     let (none, compensated) = rayon::join(|| made(&NONE), || made(kind));
     progress.finish_and_clear();
     let unit = context.unit();
-    let pairs = none.runs.iter().zip(&compensated.runs);
-    let entries = pairs.zip(&motions).map(|((none, with), motion)| Entry {
+    let entries = none.runs.iter().zip(&compensated.runs).zip(&motions);
+    let entries = entries.map(|((none, with), motion)| Entry {
         name: &motion.name,
-        errors: Errors::new(
-            unit,
-            Pair {
-                none: none.figures,
-                compensated: with.figures,
-            },
-        ),
+        errors: Errors::new(unit, Pair::of(none.figures, with.figures)),
         learned: &with.learned,
     });
     let report = Report {

@@ -353,13 +353,13 @@ fn capital(text: &str) -> String {
 fn known(discovery: &Discovery) -> Section {
     let mut table = Table::new(
         "Known parameters, moved within their tolerances",
-        ["Parameter", "moved by, %", "tolerance, ± %"],
+        ["Parameter", "moved by", "tolerance, ±"],
     );
     for k in &discovery.recalibrated {
         table = table.row([
             Cell::text(k.name.clone()),
-            Cell::number(100.0 * k.share, 3),
-            Cell::number(100.0 * k.tolerance, 1),
+            Cell::text(k.moved()),
+            Cell::text(k.within()),
         ]);
     }
     Section::new("Known parameters").table(table)

@@ -313,7 +313,7 @@ impl State {
     /// The tolerance of a G64, m.
     fn tolerance(&self, block: &Block) -> Result<f64, GcodeError> {
         // Without P, LinuxCNC cuts corners as far as speed asks for.
-        let valid = "G64 with P, a tolerance above 0";
+        let valid = "G64 with P, a tolerance from 1e-9 m to 1 m";
         let Some(value) = block.get('P') else {
             return block.refuse("G64", valid);
         };

@@ -100,6 +100,7 @@ fn known(share: f64) -> Recalibrated {
         name: "nut-stiffness".to_owned(),
         share,
         tolerance: 0.1,
+        is_angle: false,
     }
 }
 
@@ -170,6 +171,22 @@ fn a_parameter_without_tolerance_has_no_edge() {
     };
     assert!(!held.is_at_edge());
     assert!(known(-0.1).is_at_edge() && !known(0.09).is_at_edge());
+}
+
+#[test]
+fn an_angle_is_said_in_degrees_and_a_whole_turn_has_no_edge() {
+    let angle = |share: f64, tolerance: f64| Recalibrated {
+        name: "hanging-angle".to_owned(),
+        share,
+        tolerance,
+        is_angle: true,
+    };
+    let edge = angle(-0.01, 0.01);
+    assert!(edge.is_at_edge());
+    assert_eq!(edge.moved(), "-0.573°");
+    assert_eq!(edge.within(), "0.573°");
+    assert_eq!(known(-0.1).moved(), "-10.00 %");
+    assert!(!angle(3.13, std::f64::consts::PI).is_at_edge());
 }
 
 #[test]
