@@ -50,3 +50,32 @@ fn tracking_errors_of_model_and_machine() {
         );
     }
 }
+
+/// Each test that docs/crates-compared.md names in a table is there, in the file that the page names: `file.rs`: `name`, ...
+#[test]
+fn tests_that_the_comparison_names_are_there() {
+    let page = std::fs::read_to_string(root("docs/crates-compared.md")).unwrap();
+    let (mut folder, mut count) = (String::new(), 0);
+    for line in page.lines().filter(|line| line.starts_with('|')) {
+        let cell = line.trim_end_matches('|').rsplit('|').next().unwrap();
+        if let Some((_, named)) = cell.split_once("tests in `") {
+            folder = named.split('`').next().unwrap().to_owned();
+            continue;
+        }
+        let mut file = String::new();
+        for word in cell.split('`').skip(1).step_by(2) {
+            if word.ends_with(".rs") {
+                let path = match word.starts_with("crates/") {
+                    true => root(word),
+                    false => root(&folder).join(word),
+                };
+                file = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{path:?}: {e}"));
+            } else if !file.is_empty() {
+                let name = word.rsplit("::").next().unwrap();
+                assert!(file.contains(&format!("fn {name}(")), "{line}");
+                count += 1;
+            }
+        }
+    }
+    assert!(count > 150, "{count}");
+}

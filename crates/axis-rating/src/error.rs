@@ -4,6 +4,7 @@ use thiserror::Error;
 
 /// A number that makes no rating.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum RatingError {
     /// A number outside what it can be.
     #[error("{name} is {value}; valid: {valid}")]
