@@ -223,6 +223,45 @@ fn encoder_less_scale_tells_growth_and_the_current_tells_friction() {
     assert!(found.after.friction.unwrap() < 0.02, "{:?}", found.after);
 }
 
+/// A correction subtracts the growth that the controller does not see: of the screw with the motor's encoder, of the
+/// scale with a scale. Both by the growth of the thermal network itself.
+#[test]
+fn a_reference_is_corrected_by_the_growth_that_the_axis_does_not_see() {
+    let text = include_str!("../../../data/axes/screw-heat.toml");
+    let by_scale = text.replace("feedback = \"motor\"", "feedback = \"load\"");
+    assert_ne!(text, by_scale);
+    let one = program(0.45, 0.95, 0.2);
+    let duration = trajectories::Motion::duration(&one);
+    let time: Vec<f64> = (0..=12_000).map(|k| 0.1 * f64::from(k)).collect();
+    let at = |t: &f64| trajectories::Motion::at(&one, t.rem_euclid(duration)).position;
+    let position: Vec<f64> = time.iter().map(at).collect();
+    let log = log(vec![("t_s", time), ("position_ref_m", position)]);
+    let last = |text: &str| {
+        let axis = Axis::parse("axis.toml", text).unwrap();
+        let slow = SlowLog::new(&axis, &log, &SlowLogOptions::default()).unwrap();
+        let end = slow.reference().unwrap()[12_000];
+        let how = FollowOptions {
+            window: 60.0,
+            homed: 0.0,
+            probe_each: None,
+            places: vec![end],
+        };
+        let found = follow(axis.thermal_model().unwrap(), &slow, &how).unwrap();
+        let last = found.rows.last().unwrap();
+        // A minute late, as the prediction is.
+        let mut heat = ModelHeat::new(&axis, &[Arc::new(one.clone()) as SharedMotion], 20.0).unwrap();
+        heat.until(1140.0).unwrap();
+        (last.at_reference.unwrap(), last.growth[0], heat.growth(end))
+    };
+    let (corrected, screw, unseen) = last(text);
+    assert!(corrected > 15e-6 && corrected == screw, "{corrected:e} {screw:e}");
+    assert!((corrected - unseen).abs() < 0.5e-6, "{corrected:e} {unseen:e}");
+    let (corrected, screw, unseen) = last(&by_scale);
+    assert!(screw > 15e-6, "{screw:e}");
+    assert!(corrected > 0.0 && corrected < 2e-6, "{corrected:e}");
+    assert!((corrected - unseen).abs() < 0.02e-6, "{corrected:e} {unseen:e}");
+}
+
 /// The second simulator warms the machine up.
 struct Brute(HeatedScrew, Motion);
 

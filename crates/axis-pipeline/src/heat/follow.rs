@@ -1,8 +1,9 @@
 //! Growth along a slow log, predicted from its reference as a controller predicts it, and set right by a probe now
 //! and then.
 
-use axis_thermal::{GrowthOf, GrowthPredictor, GrowthZero, ThermalModel};
+use axis_thermal::{GrowthPredictor, GrowthZero, ThermalModel};
 
+use super::ahead::Unseen;
 use super::{HeatError, SlowLog};
 
 /// How growth is predicted.
@@ -23,9 +24,10 @@ pub struct FollowOptions {
 pub struct FollowedRow {
     /// Since the log's begin, s.
     pub time: f64,
-    /// At each of the places, m.
+    /// Of the screw at each of the places, m, whatever the axis measures by.
     pub growth: Vec<f64>,
-    /// At the reference's position, m: what a correction subtracts from it. None if the log has no reference.
+    /// At the reference's position, m: what a correction subtracts from it. Growth of the screw on an axis that
+    /// measures at the motor, of the scale on one that measures by it. None if the log has no reference.
     pub at_reference: Option<f64>,
     /// Dry and viscous friction as multiples of those at the reference temperature.
     pub friction: [f64; 2],
@@ -67,6 +69,7 @@ pub fn follow(
     let first = log.air()[0];
     let mut run = Run {
         predictor: GrowthPredictor::new(model.clone(), first, options.window)?,
+        unseen: Unseen::of(log.axis())?,
         log,
         options,
         model,
@@ -84,6 +87,7 @@ pub fn follow(
 struct Run<'a> {
     predictor: GrowthPredictor,
     log: &'a SlowLog<'a>,
+    unseen: Unseen,
     options: &'a FollowOptions,
     model: ThermalModel,
     /// First reading and prediction at each place, if readings count from them.
@@ -198,7 +202,7 @@ impl Run<'_> {
         FollowedRow {
             time: self.log.time()[row],
             growth: self.options.places.iter().map(growth).collect(),
-            at_reference: position.map(|x| self.growth(x).read(GrowthOf::Screw)),
+            at_reference: position.map(|x| self.unseen.read(&self.growth(x))),
             friction: self.predictor.friction_factors(),
         }
     }

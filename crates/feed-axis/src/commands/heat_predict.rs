@@ -51,7 +51,8 @@ pub(super) fn command(given: &Given<'_>, options: &Options, file: &Path) -> Resu
     print("heat", &predicted)
 }
 
-/// The log that is written: growth at each position, and the reference less growth.
+/// The log that is written: growth of the screw at each position; and growth that the controller does not see at the
+/// reference, and the reference less that.
 fn channels(log: &Log, slow: &SlowLog<'_>, found: &Following, places: &[f64]) -> Result<Log> {
     let channel = |name: &str, values: Vec<f64>| Channel::new(name, values).into_diagnostic();
     let mut all = vec![channel("t_s", log.time().to_vec())?];
@@ -94,7 +95,7 @@ pub struct Predicted {
     /// Times that the prediction was set right.
     probings: usize,
     positions_mm: Vec<f64>,
-    /// At the end of the log.
+    /// Of the screw, at the end of the log.
     growth_at_end_um: Vec<f64>,
     /// Dry and viscous friction then, as multiples of the cold axis'.
     friction_at_end: [f64; 2],
@@ -133,7 +134,7 @@ impl fmt::Display for Predicted {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{}: growth along {}, {:.2} h, from its reference alone, since {} s",
+            "{}: growth of the screw along {}, {:.2} h, from its reference alone, since {} s",
             self.axis,
             self.log,
             self.hours,
