@@ -314,6 +314,23 @@ fn growth_and_friction_are_planned_together() {
     assert!(blind[1] > 70.0 && both[1] < 2.5, "{blind:?} {both:?}");
 }
 
+/// A scale that turns keeps its angles: what grows with its radius is no angle.
+#[test]
+fn an_axis_that_turns_warms_up_and_does_not_grow() {
+    let text = include_str!("../../../data/axes/rotary-table.toml");
+    let text = format!("{text}\n[thermal]\nscale_expansion_um_per_m_k = 10\n");
+    let axis = Axis::parse("rotary-table.toml", &text).unwrap();
+    let limits = Limits::new(3.0, 25.0, 800.0).unwrap();
+    let steps = [1.5, 0.0].map(|to| Step::Move { to, limits }).to_vec();
+    let turn = Arc::new(Program::new(0.0, steps).unwrap());
+    let mut heat = ModelHeat::new(&axis, &[turn.clone() as SharedMotion], 20.0).unwrap();
+    heat.until(3600.0).unwrap();
+    assert!(heat.friction()[1] < 0.999, "{:?}", heat.friction());
+    assert_eq!([0.0, 1.5].map(|x| heat.growth(x)), [0.0; 2]);
+    let ahead = heat.ahead(&*turn).unwrap();
+    assert_eq!(ahead.growth(0.5, 1.5), [0.0; 2]);
+}
+
 /// Along a motion of minutes growth and friction change on the way.
 #[test]
 fn what_is_ahead_of_a_long_motion_is_what_the_network_does() {

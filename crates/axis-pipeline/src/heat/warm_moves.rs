@@ -34,7 +34,8 @@ pub trait Warmth {
     /// Dry and viscous friction now, as multiples of the cold axis'.
     fn friction(&self) -> [f64; 2];
 
-    /// By how far the table at the position `x` (m) is from where the controller's measuring has it, m.
+    /// By how far the table at the position `x` (m) is from where the controller's measuring has it, m; 0 for a load
+    /// that turns.
     fn growth(&self, x: f64) -> f64;
 }
 
