@@ -314,6 +314,20 @@ fn growth_and_friction_are_planned_together() {
     assert!(blind[1] > 70.0 && both[1] < 2.5, "{blind:?} {both:?}");
 }
 
+#[test]
+fn passes_that_would_overlap_are_refused() {
+    let axis = axis();
+    let stroke: SharedMotion = Arc::new(program(0.45, 0.95, 0.2));
+    let refused = |after: &[f64]| {
+        let mut heat = ModelHeat::new(&axis, &[stroke.clone()], 20.0).unwrap();
+        WarmMoves::new(&axis, &mut heat, after, 8.0).err()
+    };
+    let error = refused(&[0.0, 5.0]).unwrap();
+    assert!(error.to_string().contains("the moves take 8"), "{error}");
+    assert!(refused(&[0.0, 600.0, 607.0]).is_some());
+    assert!(refused(&[0.0, 8.0]).is_none());
+}
+
 /// A scale that turns keeps its angles: what grows with its radius is no angle.
 #[test]
 fn an_axis_that_turns_warms_up_and_does_not_grow() {

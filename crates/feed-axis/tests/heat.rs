@@ -333,6 +333,18 @@ fn moves_are_made_on_an_axis_that_warms_up() {
             "do not rise",
         ),
         (
+            SCREW,
+            vec![program.as_str()],
+            vec!["1s"],
+            "--after",
+        ),
+        (
+            SCREW,
+            vec![program.as_str()],
+            vec!["5min", "301s"],
+            "those after 301 s would begin before those after 300 s have ended",
+        ),
+        (
             "data/axes/screw-datasheet.toml",
             vec![program.as_str()],
             vec!["5min"],

@@ -153,16 +153,21 @@ pub struct WarmMoves {
 
 impl WarmMoves {
     /// Warms a machine up, whose parts are cold as its file has them, for passes of so many seconds after each of
-    /// `after` (s, rising).
+    /// `after` (s, rising by a pass or more: the duty goes on meanwhile).
     ///
     /// # Errors
-    /// [`PipelineError`] if its heat does not settle or its friction vanishes.
+    /// [`PipelineError`] if its heat does not settle or its friction vanishes, or a time comes before the pass of the
+    /// time before has ended.
     pub fn new(
         machine: &Axis,
         warmth: &mut dyn Warmth,
         after: &[f64],
         pass: f64,
     ) -> Result<Self, PipelineError> {
+        let early = after.windows(2).find(|w| w[1] - w[0] < pass * (1.0 - 1e-9));
+        if let Some(&[before, time]) = early {
+            return Err(HeatError::PassesOverlap { before, time, pass }.into());
+        }
         let mut warm = Self {
             after: after.to_vec(),
             loops: Vec::new(),
