@@ -60,7 +60,7 @@ impl ThermalParameters {
     /// all bodies begin at the first air's temperature.
     ///
     /// # Errors
-    /// [`ThermalError`] if a log's duties are of another screw, nothing was read in them, or the
+    /// [`ThermalError`] if a log's duties are of another screw, no growth in them can be compared, or the
     /// numbers make no model.
     pub fn fit(
         &self,
@@ -68,9 +68,10 @@ impl ThermalParameters {
         unknowns: &[ThermalUnknown],
         how: &GrowthFit,
     ) -> Result<FittedGrowth, ThermalError> {
-        let found: usize = logs.iter().map(GrowthLog::readings).sum();
-        let valid = "a log with growth at one place or more";
-        check(found > 0, "number of growths read", found as f64, "", valid)?;
+        let found: usize = logs.iter().map(GrowthLog::comparisons).sum();
+        let valid = "a log with growth at one place or more; at one place twice or more, if it counts from the first reading there";
+        let name = "number of growths to compare";
+        check(found > 0, name, found as f64, "", valid)?;
         check(
             how.uncertainty > 0.0,
             "uncertainty",
@@ -96,7 +97,7 @@ impl ThermalParameters {
         Ok(FittedGrowth {
             parameters,
             factors: factors.collect(),
-            rms: (squares / errors.len().max(1) as f64).sqrt(),
+            rms: (squares / errors.len() as f64).sqrt(),
         })
     }
 }

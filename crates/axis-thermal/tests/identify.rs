@@ -199,22 +199,30 @@ fn probing_sets_the_prediction_right() {
 #[test]
 fn a_log_without_growth_is_refused() {
     let model = ThermalModel::new(assumed()).unwrap();
-    let stretch = GrowthStretch {
-        duty: duty(&model, None),
+    let duty = duty(&model, None);
+    let stretch = |found: &[[f64; 2]]| GrowthStretch {
+        duty: duty.clone(),
         duration: 300.0,
         air: [20.0; 2],
-        found: Vec::new(),
+        found: found.to_vec(),
         friction: None,
     };
-    let log = GrowthLog {
-        stretches: vec![stretch],
+    let log = |stretches: Vec<GrowthStretch>, zero| GrowthLog {
+        stretches,
+        zero,
         ..GrowthLog::default()
     };
-    let error = assumed().fit(&[log], &ThermalUnknown::ALL, &GrowthFit::default());
-    assert!(
-        error
-            .unwrap_err()
-            .to_string()
-            .contains("valid: a log with growth")
-    );
+    let refused = |log: GrowthLog| {
+        let error = assumed().fit(&[log], &ThermalUnknown::ALL, &GrowthFit::default());
+        error.unwrap_err().to_string()
+    };
+    let message = refused(log(vec![stretch(&[])], GrowthZero::Begin));
+    assert!(message.contains("valid: a log with growth"), "{message}");
+    // Each reading is the zero of its place: nothing is left to compare.
+    let each_once = || vec![stretch(&[[0.5, 1e-6]]), stretch(&[[0.8, 2e-6]])];
+    let first = log(each_once(), GrowthZero::FirstAtPlace);
+    assert_eq!(first.comparisons(), 0);
+    let message = refused(first);
+    assert!(message.contains("twice or more"), "{message}");
+    assert_eq!(log(each_once(), GrowthZero::Begin).comparisons(), 2);
 }

@@ -1,7 +1,7 @@
 //! Growth along a slow log, predicted from its reference as a controller predicts it, and set right by a probe now
 //! and then.
 
-use axis_thermal::{GrowthPredictor, GrowthZero, ThermalModel};
+use axis_thermal::{GrowthPredictor, GrowthZeros, ThermalModel};
 
 use super::ahead::Unseen;
 use super::{HeatError, SlowLog};
@@ -46,8 +46,6 @@ pub struct Following {
 
 /// Readings so near in time to the first of a probing belong to it, s.
 const ONE_PROBING: f64 = 60.0;
-/// Positions nearer than this count as one, m.
-const SAME_PLACE: f64 = 1e-6;
 
 /// Predicts growth along a log.
 ///
@@ -73,7 +71,7 @@ pub fn follow(
         log,
         options,
         model,
-        zeros: Vec::new(),
+        zeros: GrowthZeros::new(log.reads().1),
         probing: Vec::new(),
         probing_since: None,
         next_probing: options.probe_each.map(|each| options.homed + each),
@@ -90,8 +88,7 @@ struct Run<'a> {
     unseen: Unseen,
     options: &'a FollowOptions,
     model: ThermalModel,
-    /// First reading and prediction at each place, if readings count from them.
-    zeros: Vec<[f64; 3]>,
+    zeros: GrowthZeros,
     /// Positions of the probing that goes on, and by how much growth is off there, m.
     probing: Vec<[f64; 2]>,
     probing_since: Option<f64>,
@@ -150,21 +147,11 @@ impl Run<'_> {
     }
 
     fn read(&mut self, now: f64, place: f64, read: f64) {
-        let (of, zero) = self.log.reads();
+        let (of, _) = self.log.reads();
         let predicted = self.growth(place).read(of);
-        let mut reading = [place, read, predicted];
-        if zero == GrowthZero::FirstAtPlace {
-            let known = self
-                .zeros
-                .iter()
-                .find(|z| (z[0] - place).abs() < SAME_PLACE);
-            let Some(known) = known else {
-                self.zeros.push(reading);
-                return;
-            };
-            reading[1] -= known[1];
-            reading[2] -= known[2];
-        }
+        let Some(reading) = self.zeros.counted([place, read, predicted]) else {
+            return;
+        };
         if !self.is_homed {
             return;
         }
