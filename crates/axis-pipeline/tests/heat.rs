@@ -223,6 +223,38 @@ fn encoder_less_scale_tells_growth_and_the_current_tells_friction() {
     assert!(found.after.friction.unwrap() < 0.02, "{:?}", found.after);
 }
 
+/// Where a log is cut off by chance does not count.
+#[test]
+fn a_second_more_of_a_log_changes_little() {
+    let axis = axis();
+    let (longer, _) = encoder_and_scale(1801.2 / 3600.0);
+    let rows = longer.time().iter().filter(|t| **t <= 1800.0 + 1e-6).count();
+    let channels = ["t_s", "position_ref_mm", "position_m", "motor_angle_rad", "iq_a"];
+    let first = channels.map(|name| match name {
+        "t_s" => (name, longer.time()[..rows].to_vec()),
+        name => (name, longer.channel(name).unwrap()[..rows].to_vec()),
+    });
+    let shorter = log(first.to_vec());
+    let fitted = |log: &Log, held_out: f64| {
+        let slow = SlowLog::new(&axis, log, &SlowLogOptions::default()).unwrap();
+        let stretches = slow.stretches(&axis.thermal_model().unwrap()).stretches;
+        assert_eq!(stretches.len(), 6);
+        let found = fit(&axis, &[slow], held_out).unwrap();
+        let factors = found.fitted.factors.iter().map(|(_, factor)| factor.ln());
+        (factors.collect::<Vec<f64>>(), found.after)
+    };
+    let (all, all_longer) = (fitted(&shorter, 0.0).0, fitted(&longer, 0.0).0);
+    for (a, b) in all.iter().zip(&all_longer) {
+        assert!((a - b).abs() < 0.03, "{all:?} {all_longer:?}");
+    }
+    let (held, held_longer) = (fitted(&shorter, 0.3).1, fitted(&longer, 0.3).1);
+    println!("{held:?} {held_longer:?}");
+    assert_eq!(held.readings, held_longer.readings);
+    assert!((held.rms - held_longer.rms).abs() < 0.2e-6, "{held:?} {held_longer:?}");
+    let [a, b] = [held, held_longer].map(|held| held.friction.unwrap());
+    assert!((a - b).abs() < 0.003, "{a} {b}");
+}
+
 /// A correction subtracts the growth that the controller does not see: of the screw with the motor's encoder, of the
 /// scale with a scale. Both by the growth of the thermal network itself.
 #[test]

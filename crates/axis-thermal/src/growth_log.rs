@@ -87,6 +87,8 @@ pub struct FollowedGrowth {
 pub struct FollowedFriction {
     /// Number of its stretch, from 0.
     pub stretch: usize,
+    /// How long that is, s.
+    pub duration: f64,
     /// As it was read, W.
     pub found: f64,
     /// As the model has it, W.
@@ -210,6 +212,7 @@ impl ThermalModel {
                     let after = friction_power(&network, &state);
                     followed.friction.push(FollowedFriction {
                         stretch: number,
+                        duration: stretch.duration,
                         found,
                         predicted: (before + 4.0 * middle + after) / 6.0,
                     });

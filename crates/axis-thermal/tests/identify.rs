@@ -196,6 +196,32 @@ fn probing_sets_the_prediction_right() {
     );
 }
 
+/// A mean of friction over a second, which a stroke makes wrong, says next to nothing beside those of minutes.
+#[test]
+fn friction_counts_by_the_duration_of_its_stretch() {
+    let mut log = GrowthLog {
+        stretches: hours(&HeatHours::to_fit(), &[0.5, 1.1], 1, 0.5e-6).log,
+        ..GrowthLog::default()
+    };
+    log.stretches.truncate(6);
+    let fall = |log: &GrowthLog| {
+        let logs = std::slice::from_ref(log);
+        let fit = assumed().fit(logs, &[ThermalUnknown::ViscousFall], &GrowthFit::default());
+        fit.unwrap().factors[0].1
+    };
+    let before = fall(&log);
+    let last = log.stretches.last().unwrap().clone();
+    log.stretches.push(GrowthStretch {
+        duration: 1.2,
+        found: Vec::new(),
+        friction: last.friction.map(|power| 1.5 * power),
+        ..last
+    });
+    let after = fall(&log);
+    println!("{before} {after}");
+    assert!((after / before - 1.0).abs() < 0.02, "{before} {after}");
+}
+
 #[test]
 fn a_log_without_growth_is_refused() {
     let model = ThermalModel::new(assumed()).unwrap();
