@@ -272,6 +272,20 @@ fn slow_logs_that_cannot_be_used_are_refused() {
         let message = refuse(&all);
         assert!(message.contains(words), "{arguments:?}: {message}");
     }
+    // Options for logs without a log.
+    for arguments in [
+        ["--out", &out],
+        ["--duties", &log],
+        ["--probe-against", "bed"],
+        ["--probe-zero", "first"],
+        ["--probe-each", "30min"],
+        ["--homed", "30min"],
+        ["--held-out", "10"],
+    ] {
+        let message = refuse(&[&["heat", "--axis", SCREW], &arguments[..]].concat());
+        let asks = message.contains("--fit") || message.contains("--predict");
+        assert!(asks, "{arguments:?}: {message}");
+    }
     assert!(!std::path::Path::new(&out).exists());
 }
 
