@@ -266,6 +266,14 @@ fn slow_logs_that_cannot_be_used_are_refused() {
             "valid: 0 for standstill, or from 1 to 1",
         ),
         (vec!["--predict", "none.csv"], "none.csv"),
+        (
+            vec!["--predict", &log, "--trajectory", "9"],
+            "--trajectory 9: there is no such trajectory",
+        ),
+        (
+            vec!["--predict", &log, "--program", "no-duty.toml"],
+            "no-duty.toml",
+        ),
     ] {
         let mut all = vec!["heat", "--axis", SCREW];
         all.extend(&arguments);

@@ -88,17 +88,12 @@ impl Options {
         !self.fit.is_empty() || self.predict.is_some()
     }
 
-    /// The duties of the logs: those named, or `own`.
-    pub(super) fn programs(
-        &self,
-        axis: &Axis,
-        own: impl FnOnce() -> Result<Program>,
-    ) -> Result<Vec<SharedMotion>> {
+    /// The duties of the logs: those named, or `own` if there is one.
+    pub(super) fn programs(&self, axis: &Axis, own: Option<Program>) -> Result<Vec<SharedMotion>> {
         let shared = |program| Arc::new(program) as SharedMotion;
         let read = |file: &PathBuf| super::heat::repeated(file, axis).map(shared);
         match self.duties.is_empty() {
-            // An axis file without a trajectory may have logs with a reference.
-            true => Ok(own().into_iter().map(shared).collect()),
+            true => Ok(own.into_iter().map(shared).collect()),
             false => self.duties.iter().map(read).collect(),
         }
     }
