@@ -209,6 +209,17 @@ fn a_fitted_axis_file_predicts_the_log() {
         text.contains("Held out: the last 25 %, 7 readings"),
         "{text}"
     );
+    // Fitted again: one such head, and the comments of the first file below it.
+    let again = folder.path().join("again.toml").display().to_string();
+    found(&["--axis", &out, "--fit", &log, "--out", &again]);
+    let text = std::fs::read_to_string(&again).unwrap();
+    for once in ["heat --fit`", "Held out:", "Such logs do not"] {
+        assert_eq!(text.matches(once).count(), 1, "{once}: {text}");
+    }
+    let first = std::fs::read_to_string(SCREW).or_else(|_| std::fs::read_to_string(format!("../../{SCREW}")));
+    let first = first.unwrap();
+    let line = first.lines().next().unwrap();
+    assert!(text.contains(&format!("same growth.\n\n{line}\n")), "{text}");
     // The file is an axis file, and predicts what it was fitted to.
     let csv = folder.path().join("growth.csv").display().to_string();
     let along = found(&[
