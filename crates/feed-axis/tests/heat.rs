@@ -1,6 +1,6 @@
 //! `heat`: hours of a duty.
 
-use crate::common::{refuse, run, succeed};
+use crate::common::{refuse, root, run, succeed};
 
 const SCREW: &str = "data/axes/screw-heat.toml";
 
@@ -216,8 +216,7 @@ fn a_fitted_axis_file_predicts_the_log() {
     for once in ["heat --fit`", "Held out:", "Such logs do not"] {
         assert_eq!(text.matches(once).count(), 1, "{once}: {text}");
     }
-    let first = std::fs::read_to_string(SCREW).or_else(|_| std::fs::read_to_string(format!("../../{SCREW}")));
-    let first = first.unwrap();
+    let first = std::fs::read_to_string(root().join(SCREW)).unwrap();
     let line = first.lines().next().unwrap();
     assert!(text.contains(&format!("same growth.\n\n{line}\n")), "{text}");
     // The file is an axis file, and predicts what it was fitted to.
