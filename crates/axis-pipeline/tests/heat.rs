@@ -294,6 +294,25 @@ fn a_reference_is_corrected_by_the_growth_that_the_axis_does_not_see() {
     assert!((corrected - unseen).abs() < 0.02e-6, "{corrected:e} {unseen:e}");
 }
 
+#[test]
+fn probing_without_a_time_between_is_refused() {
+    let axis = axis();
+    let log = log(vec![("t_s", vec![0.0, 300.0]), ("duty_1", vec![0.0, 0.0])]);
+    let slow = SlowLog::new(&axis, &log, &SlowLogOptions::default()).unwrap();
+    let along = |probe_each| {
+        let how = FollowOptions {
+            probe_each: Some(probe_each),
+            ..FollowOptions::default()
+        };
+        follow(axis.thermal_model().unwrap(), &slow, &how)
+    };
+    for each in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let error = along(each).unwrap_err().to_string();
+        assert!(error.contains("probe_each") && error.contains("valid: above 0 s"), "{error}");
+    }
+    assert!(along(300.0).is_ok());
+}
+
 /// The second simulator warms the machine up.
 struct Brute(HeatedScrew, Motion);
 

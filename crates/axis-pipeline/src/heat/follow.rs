@@ -19,6 +19,18 @@ pub struct FollowOptions {
     pub places: Vec<f64>,
 }
 
+impl Default for FollowOptions {
+    /// A minute; homed at the begin; nothing set right; no positions.
+    fn default() -> Self {
+        Self {
+            window: 60.0,
+            homed: 0.0,
+            probe_each: None,
+            places: Vec::new(),
+        }
+    }
+}
+
 /// Growth at one row of the log.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FollowedRow {
@@ -62,6 +74,13 @@ pub fn follow(
             name: "homed",
             value: options.homed,
             valid: "a time within the log, s since its begin",
+        });
+    }
+    if let Some(each) = options.probe_each.filter(|each| !(*each > 0.0 && each.is_finite())) {
+        return Err(HeatError::Option {
+            name: "probe_each",
+            value: each,
+            valid: "above 0 s, and finite",
         });
     }
     let first = log.air()[0];

@@ -12,6 +12,7 @@ use miette::{IntoDiagnostic, Result, WrapErr};
 use trajectories::{Motion, Program, Step};
 
 use super::heat_time::time;
+pub use super::heat_time::LONGEST;
 use super::heat_words::{Heated, HeatedNode, HeatedPlace};
 use super::motions::{listed, program_on};
 use super::{heat_fit, heat_predict, heat_slow};
@@ -195,22 +196,43 @@ impl Options {
     }
 
     fn places(&self, axis: &Axis) -> Result<Vec<f64>> {
-        places(axis, &self.at)
+        places(axis, &self.at, GivenAs::AT)
     }
 }
 
-/// Positions at which growth is shown, m: those that were asked for (mm), or five over the stroke.
+/// How positions are given: what they are called, their unit, and what it is in metres.
+#[derive(Clone, Copy)]
+pub struct GivenAs {
+    /// What the user calls them.
+    pub name: &'static str,
+    /// Their unit.
+    pub unit: &'static str,
+    /// That unit, m.
+    pub metres: f64,
+}
+
+impl GivenAs {
+    /// Of the command.
+    pub const AT: Self = Self {
+        name: "--at",
+        unit: "mm",
+        metres: 1e-3,
+    };
+}
+
+/// Positions at which growth is shown, m: those that were asked for, or five over the stroke.
 ///
 /// # Errors
 /// Wrong use, if one is outside the stroke or the load turns.
-pub fn places(axis: &Axis, at: &[f64]) -> Result<Vec<f64>> {
+pub fn places(axis: &Axis, at: &[f64], given: GivenAs) -> Result<Vec<f64>> {
     let stroke = &axis.stroke;
+    let GivenAs { name, unit, metres } = given;
     if axis.freedom() == Freedom::Rotary {
         return match at.is_empty() {
             true => Ok(Vec::new()),
-            false => Err(wrong_use(
-                "--at: the load of this axis turns, and growth is along lines alone".to_owned(),
-            )),
+            false => Err(wrong_use(format!(
+                "{name}: the load of this axis turns, and growth is along lines alone"
+            ))),
         };
     }
     if at.is_empty() {
@@ -220,14 +242,14 @@ pub fn places(axis: &Axis, at: &[f64]) -> Result<Vec<f64>> {
     }
     let slack = 1e-9;
     let inside = stroke.minimum - slack..=stroke.maximum + slack;
-    let place = |mm: &f64| {
-        let at = 1e-3 * mm;
+    let place = |given: &f64| {
+        let at = metres * given;
         match inside.contains(&at) {
             true => Ok(at),
             false => Err(wrong_use(format!(
-                "--at {mm}: the table is between {} and {} mm",
-                SixDigits(1e3 * stroke.minimum),
-                SixDigits(1e3 * stroke.maximum)
+                "{name} {given}: the table is between {} and {} {unit}",
+                SixDigits(stroke.minimum / metres),
+                SixDigits(stroke.maximum / metres)
             ))),
         }
     };
