@@ -325,8 +325,8 @@ impl Warmth for Brute {
         Ok(())
     }
 
-    fn friction(&self) -> [f64; 2] {
-        self.0.friction_factors(0.7)
+    fn friction(&self) -> Result<[f64; 2], HeatError> {
+        Ok(self.0.friction_factors(0.7))
     }
 
     fn growth(&self, x: f64) -> f64 {
@@ -366,6 +366,13 @@ fn growth_and_friction_are_planned_together() {
 }
 
 #[test]
+fn a_duty_of_nothing_tells_no_friction() {
+    let heat = ModelHeat::new(&axis(), &[], 20.0).unwrap();
+    let error = heat.friction().unwrap_err().to_string();
+    assert!(error.contains("the duty has no duration"), "{error}");
+}
+
+#[test]
 fn passes_that_would_overlap_are_refused() {
     let axis = axis();
     let stroke: SharedMotion = Arc::new(program(0.45, 0.95, 0.2));
@@ -390,7 +397,8 @@ fn an_axis_that_turns_warms_up_and_does_not_grow() {
     let turn = Arc::new(Program::new(0.0, steps).unwrap());
     let mut heat = ModelHeat::new(&axis, &[turn.clone() as SharedMotion], 20.0).unwrap();
     heat.until(3600.0).unwrap();
-    assert!(heat.friction()[1] < 0.999, "{:?}", heat.friction());
+    let friction = heat.friction().unwrap();
+    assert!(friction[1] < 0.999, "{friction:?}");
     assert_eq!([0.0, 1.5].map(|x| heat.growth(x)), [0.0; 2]);
     let ahead = heat.ahead(&*turn).unwrap();
     assert_eq!(ahead.growth(0.5, 1.5), [0.0; 2]);
@@ -421,7 +429,7 @@ fn what_is_ahead_of_a_long_motion_is_what_the_network_does() {
         );
         let rise = (heat.growth(0.91) - heat.growth(0.89)) / 0.02;
         assert!((slope / rise - 1.0).abs() < 0.02, "{slope} {rise}");
-        for (a, b) in ahead.friction(share * end).iter().zip(heat.friction()) {
+        for (a, b) in ahead.friction(share * end).iter().zip(heat.friction().unwrap()) {
             assert!((a - b).abs() < 0.01, "{a} {b}");
         }
     }

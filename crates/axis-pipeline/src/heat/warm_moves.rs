@@ -32,7 +32,10 @@ pub trait Warmth {
     fn until(&mut self, time: f64) -> Result<(), HeatError>;
 
     /// Dry and viscous friction now, as multiples of the cold axis'.
-    fn friction(&self) -> [f64; 2];
+    ///
+    /// # Errors
+    /// [`HeatError`] if the duty tells no friction.
+    fn friction(&self) -> Result<[f64; 2], HeatError>;
 
     /// By how far the table at the position `x` (m) is from where the controller's measuring has it, m; 0 for a load
     /// that turns.
@@ -115,9 +118,8 @@ impl Warmth for ModelHeat {
         Ok(())
     }
 
-    fn friction(&self) -> [f64; 2] {
-        let at_work = self.model.under(&self.duty);
-        at_work.map_or([1.0; 2], |at_work| at_work.friction_factors(&self.now))
+    fn friction(&self) -> Result<[f64; 2], HeatError> {
+        Ok(self.model.under(&self.duty)?.friction_factors(&self.now))
     }
 
     fn growth(&self, x: f64) -> f64 {
@@ -175,10 +177,10 @@ impl WarmMoves {
         };
         for time in after {
             warmth.until(*time)?;
-            let before = warmth.friction();
+            let before = warmth.friction()?;
             let mut grown = HeatAhead::constant(machine, |x| warmth.growth(x), before);
             warmth.until(time + pass)?;
-            let after = warmth.friction();
+            let after = warmth.friction()?;
             grown.push(pass, |x| warmth.growth(x), after);
             warm.grown.push(grown);
             // Friction changes by some thousandths in a pass.
