@@ -294,6 +294,55 @@ fn a_reference_is_corrected_by_the_growth_that_the_axis_does_not_see() {
     assert!((corrected - unseen).abs() < 0.02e-6, "{corrected:e} {unseen:e}");
 }
 
+/// A machine that grows 5 µm more than its model: after one probing of two places, ten seconds apart, the rest is
+/// predicted. In the minute and a half until the next row the machine grows by more than that.
+#[test]
+fn what_a_probing_finds_is_off_at_its_own_time() {
+    let axis = axis();
+    let motion = there_and_back(0.45, 0.95, 0.2, 1.0);
+    let duties = [Arc::new(program(0.45, 0.95, 0.2)) as SharedMotion];
+    let options = SlowLogOptions {
+        duties: &duties,
+        ..SlowLogOptions::default()
+    };
+    let along = |rows: &[(f64, f64)], probe_each| {
+        let mut machine = HeatedScrew::assumed(20.0);
+        let read = |(time, place): &(f64, f64)| {
+            machine.run(Some(&motion), time - machine.time, |_| 20.0);
+            machine.growth(20.0, *place) + 5e-6
+        };
+        let growth: Vec<f64> = rows.iter().map(read).collect();
+        let log = log(vec![
+            ("t_s", rows.iter().map(|row| row.0).collect()),
+            ("duty_1", vec![1.0; rows.len()]),
+            ("place_m", rows.iter().map(|row| row.1).collect()),
+            ("growth_m", growth.clone()),
+        ]);
+        let slow = SlowLog::new(&axis, &log, &options).unwrap();
+        let how = FollowOptions {
+            probe_each,
+            places: vec![0.95],
+            ..FollowOptions::default()
+        };
+        let found = follow(axis.thermal_model().unwrap(), &slow, &how).unwrap();
+        (found, growth)
+    };
+    let rows = [(0.0, 0.95), (300.0, 0.95), (310.0, 0.5), (400.0, 0.95), (500.0, 0.5)];
+    let (found, growth) = along(&rows, Some(300.0));
+    assert!(growth[3] - growth[1] > 8e-6, "{growth:?}");
+    assert_eq!((found.probings, found.readings.len()), (1, 3));
+    for [place, read, predicted] in &found.readings[1..] {
+        assert!((read - predicted).abs() < 0.5e-6, "{place}: {read:e} {predicted:e}");
+    }
+    // A probing that ends the log counts, and the last row goes through it.
+    let (found, growth) = along(&rows[..2], Some(300.0));
+    assert_eq!((found.probings, found.readings.len()), (1, 1));
+    let last = found.rows.last().unwrap();
+    assert!((last.growth[0] - growth[1]).abs() < 1e-9, "{last:?} {growth:?}");
+    let (found, _) = along(&rows[..2], None);
+    assert_eq!((found.probings, found.readings.len()), (0, 2));
+}
+
 #[test]
 fn probing_without_a_time_between_is_refused() {
     let axis = axis();

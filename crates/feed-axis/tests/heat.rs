@@ -248,8 +248,12 @@ fn a_fitted_axis_file_predicts_the_log() {
         &log,
         "--probe-each",
         "30min",
+        "--homed",
+        "30min",
     ];
     let words = succeed(&arguments);
+    assert!(words.contains("since 1800 s"), "{words}");
+    // At 60, 90 and 120 minutes, the last at the log's end.
     assert!(words.contains("set right by 3 probings"), "{words}");
 }
 

@@ -52,7 +52,7 @@ pub struct Following {
     pub rows: Vec<FollowedRow>,
     /// Position, reading and prediction (m) of each reading that no correction was made from.
     pub readings: Vec<[f64; 3]>,
-    /// Readings that the prediction was set right by.
+    /// Probings that the prediction was set right by, each of the readings of a minute.
     pub probings: usize,
 }
 
@@ -139,6 +139,13 @@ impl Run<'_> {
                 }
             }
             self.found.rows.push(self.row(row));
+        }
+        // A probing at the log's end sets the last row right.
+        if self.probing_since.is_some() {
+            self.set_right()?;
+            self.found.rows.pop();
+            let last = self.row(self.found.rows.len());
+            self.found.rows.push(last);
         }
         Ok(())
     }
