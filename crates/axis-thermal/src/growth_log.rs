@@ -1,7 +1,7 @@
 //! A log of hours: duties, the growth that was read meanwhile, and what a model makes of them.
 
 use crate::duty::Duty;
-use crate::error::{ThermalError, check};
+use crate::error::ThermalError;
 use crate::growth::Growth;
 use crate::model::{ThermalModel, ThermalState};
 use crate::run::ThermalAccuracy;
@@ -165,17 +165,20 @@ impl GrowthLog {
     }
 
     pub(crate) fn validate(&self) -> Result<(), ThermalError> {
-        for stretch in &self.stretches {
-            let read = stretch.found.iter().flatten().copied();
-            let numbers = read.chain(stretch.air).chain(stretch.friction);
-            for value in numbers {
-                check(
-                    value.is_finite(),
-                    "a number of the log",
-                    value,
-                    "",
-                    "finite",
-                )?;
+        for (number, stretch) in self.stretches.iter().enumerate() {
+            let found = stretch.found.iter();
+            let read = found.flat_map(|&[place, growth]| [("place", place), ("growth", growth)]);
+            let air = stretch.air.map(|air| ("temperature of the air", air));
+            let friction = stretch.friction.map(|power| ("power of the friction", power));
+            let duration = [("duration", stretch.duration)];
+            for (channel, value) in read.chain(air).chain(friction).chain(duration) {
+                if !value.is_finite() {
+                    return Err(ThermalError::Log {
+                        stretch: number + 1,
+                        channel,
+                        value,
+                    });
+                }
             }
         }
         Ok(())

@@ -223,6 +223,37 @@ fn friction_counts_by_the_duration_of_its_stretch() {
 }
 
 #[test]
+fn a_log_with_a_value_that_is_no_number_names_it() {
+    let model = ThermalModel::new(assumed()).unwrap();
+    let stretch = GrowthStretch {
+        duty: duty(&model, None),
+        duration: 300.0,
+        air: [20.0; 2],
+        found: vec![[0.5, 1e-6]],
+        friction: Some(100.0),
+    };
+    let refused = |change: fn(&mut GrowthStretch)| {
+        let mut stretches = vec![stretch.clone(), stretch.clone()];
+        change(&mut stretches[1]);
+        let log = GrowthLog {
+            stretches,
+            ..GrowthLog::default()
+        };
+        model.follow(&log).unwrap_err().to_string()
+    };
+    for (message, channel) in [
+        (refused(|s| s.found[0][0] = f64::NAN), "place"),
+        (refused(|s| s.found[0][1] = f64::NAN), "growth"),
+        (refused(|s| s.air[1] = f64::NAN), "temperature of the air"),
+        (refused(|s| s.friction = Some(f64::NAN)), "power of the friction"),
+        (refused(|s| s.duration = f64::NAN), "duration"),
+    ] {
+        let words = format!("the {channel} in stretch 2 of the log is NaN");
+        assert!(message.contains(&words), "{message}");
+    }
+}
+
+#[test]
 fn a_log_without_growth_is_refused() {
     let model = ThermalModel::new(assumed()).unwrap();
     let duty = duty(&model, None);
