@@ -228,8 +228,18 @@ fn encoder_less_scale_tells_growth_and_the_current_tells_friction() {
 fn a_second_more_of_a_log_changes_little() {
     let axis = axis();
     let (longer, _) = encoder_and_scale(1801.2 / 3600.0);
-    let rows = longer.time().iter().filter(|t| **t <= 1800.0 + 1e-6).count();
-    let channels = ["t_s", "position_ref_mm", "position_m", "motor_angle_rad", "iq_a"];
+    let rows = longer
+        .time()
+        .iter()
+        .filter(|t| **t <= 1800.0 + 1e-6)
+        .count();
+    let channels = [
+        "t_s",
+        "position_ref_mm",
+        "position_m",
+        "motor_angle_rad",
+        "iq_a",
+    ];
     let first = channels.map(|name| match name {
         "t_s" => (name, longer.time()[..rows].to_vec()),
         name => (name, longer.channel(name).unwrap()[..rows].to_vec()),
@@ -250,7 +260,10 @@ fn a_second_more_of_a_log_changes_little() {
     let (held, held_longer) = (fitted(&shorter, 0.3).1, fitted(&longer, 0.3).1);
     println!("{held:?} {held_longer:?}");
     assert_eq!(held.readings, held_longer.readings);
-    assert!((held.rms - held_longer.rms).abs() < 0.2e-6, "{held:?} {held_longer:?}");
+    assert!(
+        (held.rms - held_longer.rms).abs() < 0.2e-6,
+        "{held:?} {held_longer:?}"
+    );
     let [a, b] = [held, held_longer].map(|held| held.friction.unwrap());
     assert!((a - b).abs() < 0.003, "{a} {b}");
 }
@@ -281,17 +294,27 @@ fn a_reference_is_corrected_by_the_growth_that_the_axis_does_not_see() {
         let found = follow(axis.thermal_model().unwrap(), &slow, &how).unwrap();
         let last = found.rows.last().unwrap();
         // A minute late, as the prediction is.
-        let mut heat = ModelHeat::new(&axis, &[Arc::new(one.clone()) as SharedMotion], 20.0).unwrap();
+        let mut heat =
+            ModelHeat::new(&axis, &[Arc::new(one.clone()) as SharedMotion], 20.0).unwrap();
         heat.until(1140.0).unwrap();
         (last.at_reference.unwrap(), last.growth[0], heat.growth(end))
     };
     let (corrected, screw, unseen) = last(text);
-    assert!(corrected > 15e-6 && corrected == screw, "{corrected:e} {screw:e}");
-    assert!((corrected - unseen).abs() < 0.5e-6, "{corrected:e} {unseen:e}");
+    assert!(
+        corrected > 15e-6 && corrected == screw,
+        "{corrected:e} {screw:e}"
+    );
+    assert!(
+        (corrected - unseen).abs() < 0.5e-6,
+        "{corrected:e} {unseen:e}"
+    );
     let (corrected, screw, unseen) = last(&by_scale);
     assert!(screw > 15e-6, "{screw:e}");
     assert!(corrected > 0.0 && corrected < 2e-6, "{corrected:e}");
-    assert!((corrected - unseen).abs() < 0.02e-6, "{corrected:e} {unseen:e}");
+    assert!(
+        (corrected - unseen).abs() < 0.02e-6,
+        "{corrected:e} {unseen:e}"
+    );
 }
 
 /// A machine that grows 5 µm more than its model: after one probing of two places, ten seconds apart, the rest is
@@ -327,18 +350,30 @@ fn what_a_probing_finds_is_off_at_its_own_time() {
         let found = follow(axis.thermal_model().unwrap(), &slow, &how).unwrap();
         (found, growth)
     };
-    let rows = [(0.0, 0.95), (300.0, 0.95), (310.0, 0.5), (400.0, 0.95), (500.0, 0.5)];
+    let rows = [
+        (0.0, 0.95),
+        (300.0, 0.95),
+        (310.0, 0.5),
+        (400.0, 0.95),
+        (500.0, 0.5),
+    ];
     let (found, growth) = along(&rows, Some(300.0));
     assert!(growth[3] - growth[1] > 8e-6, "{growth:?}");
     assert_eq!((found.probings, found.readings.len()), (1, 3));
     for [place, read, predicted] in &found.readings[1..] {
-        assert!((read - predicted).abs() < 0.5e-6, "{place}: {read:e} {predicted:e}");
+        assert!(
+            (read - predicted).abs() < 0.5e-6,
+            "{place}: {read:e} {predicted:e}"
+        );
     }
     // A probing that ends the log counts, and the last row goes through it.
     let (found, growth) = along(&rows[..2], Some(300.0));
     assert_eq!((found.probings, found.readings.len()), (1, 1));
     let last = found.rows.last().unwrap();
-    assert!((last.growth[0] - growth[1]).abs() < 1e-9, "{last:?} {growth:?}");
+    assert!(
+        (last.growth[0] - growth[1]).abs() < 1e-9,
+        "{last:?} {growth:?}"
+    );
     let (found, _) = along(&rows[..2], None);
     assert_eq!((found.probings, found.readings.len()), (0, 2));
 }
@@ -357,7 +392,10 @@ fn probing_without_a_time_between_is_refused() {
     };
     for each in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = along(each).unwrap_err().to_string();
-        assert!(error.contains("probe_each") && error.contains("valid: above 0 s"), "{error}");
+        assert!(
+            error.contains("probe_each") && error.contains("valid: above 0 s"),
+            "{error}"
+        );
     }
     assert!(along(300.0).is_ok());
 }
@@ -478,7 +516,11 @@ fn what_is_ahead_of_a_long_motion_is_what_the_network_does() {
         );
         let rise = (heat.growth(0.91) - heat.growth(0.89)) / 0.02;
         assert!((slope / rise - 1.0).abs() < 0.02, "{slope} {rise}");
-        for (a, b) in ahead.friction(share * end).iter().zip(heat.friction().unwrap()) {
+        for (a, b) in ahead
+            .friction(share * end)
+            .iter()
+            .zip(heat.friction().unwrap())
+        {
             assert!((a - b).abs() < 0.01, "{a} {b}");
         }
     }

@@ -136,7 +136,10 @@ impl GrowthZeros {
         if self.zero == GrowthZero::Begin {
             return Some(reading);
         }
-        let known = self.first.iter().find(|at| (at[0] - place).abs() < SAME_PLACE);
+        let known = self
+            .first
+            .iter()
+            .find(|at| (at[0] - place).abs() < SAME_PLACE);
         let Some(zero) = known else {
             self.first.push(reading);
             return None;
@@ -169,7 +172,9 @@ impl GrowthLog {
             let found = stretch.found.iter();
             let read = found.flat_map(|&[place, growth]| [("place", place), ("growth", growth)]);
             let air = stretch.air.map(|air| ("temperature of the air", air));
-            let friction = stretch.friction.map(|power| ("power of the friction", power));
+            let friction = stretch
+                .friction
+                .map(|power| ("power of the friction", power));
             let duration = [("duration", stretch.duration)];
             for (channel, value) in read.chain(air).chain(friction).chain(duration) {
                 if !value.is_finite() {

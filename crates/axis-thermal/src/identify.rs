@@ -145,7 +145,11 @@ impl Problem<'_> {
         let total: f64 = worked().map(|read| read.duration).sum();
         let squares: f64 = worked().map(|read| read.duration * read.duration).sum();
         let usual = squares / total;
-        all.extend(followed.iter().flat_map(|log| log.errors().map(|error| error / self.how.uncertainty)));
+        all.extend(
+            followed
+                .iter()
+                .flat_map(|log| log.errors().map(|error| error / self.how.uncertainty)),
+        );
         all.extend(worked().map(|read| {
             let share = self.how.friction_uncertainty;
             (read.duration / usual).sqrt() * (read.predicted / read.found - 1.0) / share

@@ -83,7 +83,8 @@ pub use error::ThermalError;
 pub use friction::{FrictionLaws, TemperatureLaw};
 pub use growth::{Growth, ThermalForce};
 pub use growth_log::{
-    FollowedFriction, FollowedGrowth, FollowedLog, GrowthLog, GrowthOf, GrowthStretch, GrowthZero, GrowthZeros,
+    FollowedFriction, FollowedGrowth, FollowedLog, GrowthLog, GrowthOf, GrowthStretch, GrowthZero,
+    GrowthZeros,
 };
 pub use identify::{FittedGrowth, GrowthFit};
 pub use model::{HeatNode, ThermalModel, ThermalState};

@@ -245,7 +245,10 @@ fn a_log_with_a_value_that_is_no_number_names_it() {
         (refused(|s| s.found[0][0] = f64::NAN), "place"),
         (refused(|s| s.found[0][1] = f64::NAN), "growth"),
         (refused(|s| s.air[1] = f64::NAN), "temperature of the air"),
-        (refused(|s| s.friction = Some(f64::NAN)), "power of the friction"),
+        (
+            refused(|s| s.friction = Some(f64::NAN)),
+            "power of the friction",
+        ),
         (refused(|s| s.duration = f64::NAN), "duration"),
     ] {
         let words = format!("the {channel} in stretch 2 of the log is NaN");

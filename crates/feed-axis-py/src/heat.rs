@@ -24,9 +24,6 @@ use crate::long::long;
 use crate::loops::plain;
 use crate::motion::AnyMotion;
 
-/// Window of the predictor, s.
-const WINDOW: f64 = 60.0;
-
 /// A log as it stands: nothing of hours is evened or taken out.
 fn slow(given: &Bound<'_, PyAny>, axis: &Axis, name: String) -> PyResult<(String, Log)> {
     if let Ok(path) = given.extract::<PathBuf>() {
@@ -208,10 +205,10 @@ impl PyAxis {
         let axis = self.axis.clone();
         let (against, zero) = (probe_against.to_owned(), probe_zero.to_owned());
         let how = FollowOptions {
-            window: WINDOW,
             homed: homed_s,
             probe_each: probe_each_s,
             places: at,
+            ..FollowOptions::default()
         };
         let (found, figures) = long(py, None, move |_| {
             let reading = reading(&duties, air_degc, &against, &zero)?;

@@ -218,7 +218,10 @@ fn a_fitted_axis_file_predicts_the_log() {
     }
     let first = std::fs::read_to_string(root().join(SCREW)).unwrap();
     let line = first.lines().next().unwrap();
-    assert!(text.contains(&format!("same growth.\n\n{line}\n")), "{text}");
+    assert!(
+        text.contains(&format!("same growth.\n\n{line}\n")),
+        "{text}"
+    );
     // The file is an axis file, and predicts what it was fitted to.
     let csv = folder.path().join("growth.csv").display().to_string();
     let along = found(&[
@@ -368,12 +371,7 @@ fn moves_are_made_on_an_axis_that_warms_up() {
             vec!["1h", "5min"],
             "do not rise",
         ),
-        (
-            SCREW,
-            vec![program.as_str()],
-            vec!["1s"],
-            "--after",
-        ),
+        (SCREW, vec![program.as_str()], vec!["1s"], "--after"),
         (
             SCREW,
             vec![program.as_str()],

@@ -76,7 +76,10 @@ pub fn follow(
             valid: "a time within the log, s since its begin",
         });
     }
-    if let Some(each) = options.probe_each.filter(|each| !(*each > 0.0 && each.is_finite())) {
+    if let Some(each) = options
+        .probe_each
+        .filter(|each| !(*each > 0.0 && each.is_finite()))
+    {
         return Err(HeatError::Option {
             name: "probe_each",
             value: each,

@@ -11,8 +11,8 @@ use compensator::NoCompensation;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use trajectories::{Motion, Program, Step};
 
-use super::heat_time::time;
 pub use super::heat_time::LONGEST;
+use super::heat_time::time;
 use super::heat_words::{Heated, HeatedNode, HeatedPlace};
 use super::motions::{listed, program_on};
 use super::{heat_fit, heat_predict, heat_slow};

@@ -13,9 +13,6 @@ use serde::Serialize;
 use super::heat_slow::{Options, of_log, slow_log};
 use crate::output::print;
 
-/// Window of the predictor, s.
-const WINDOW: f64 = 60.0;
-
 /// What the command is about.
 pub(super) struct Given<'a> {
     pub axis: &'a Axis,
@@ -35,10 +32,10 @@ pub(super) fn command(given: &Given<'_>, options: &Options, file: &Path) -> Resu
     )?;
     let model = given.axis.thermal_model().into_diagnostic()?;
     let how = FollowOptions {
-        window: WINDOW,
         homed: options.homed.unwrap_or(0.0),
         probe_each: options.probe_each,
         places: given.places.clone(),
+        ..FollowOptions::default()
     };
     let found = of_log(file, follow(model, &slow, &how).into_diagnostic())?;
     if let Some(out) = &options.out {

@@ -79,9 +79,6 @@ enum ProbeZero {
     First,
 }
 
-/// Length of the stretches that a reference is fitted in, s.
-pub(super) const FIT_WINDOW: f64 = 300.0;
-
 impl Options {
     /// Whether a log was given.
     pub(super) fn is_asked(&self) -> bool {
@@ -103,7 +100,6 @@ impl Options {
         SlowLogOptions {
             duties,
             air,
-            window: FIT_WINDOW,
             probe: match self.probe_against {
                 ProbeAgainst::Bearing => GrowthOf::Screw,
                 ProbeAgainst::Bed => GrowthOf::ScrewLessBed,
@@ -112,6 +108,7 @@ impl Options {
                 ProbeZero::Begin => GrowthZero::Begin,
                 ProbeZero::First => GrowthZero::FirstAtPlace,
             },
+            ..SlowLogOptions::default()
         }
     }
 
