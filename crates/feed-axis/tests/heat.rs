@@ -198,7 +198,7 @@ fn a_fitted_axis_file_predicts_the_log() {
     assert_eq!(fitted["readings"], 18);
     assert_eq!(fitted["held_out_readings"], 7);
     let error = |of: &serde_json::Value| of["greatest_um"].as_f64().unwrap();
-    assert!(error(&fitted["assumed_numbers"]) > 3.0, "{fitted}");
+    assert!(error(&fitted["assumed_numbers"]) > 2.0, "{fitted}");
     assert!(error(&fitted["fitted_numbers"]) < 0.5, "{fitted}");
     let text = std::fs::read_to_string(&out).unwrap();
     assert!(
@@ -355,10 +355,9 @@ fn moves_are_made_on_an_axis_that_warms_up() {
             .unwrap()
     };
     assert_eq!(made["passes"].as_array().unwrap().len(), 2);
-    assert!(
-        (max(0, "with_heat") - max(0, "without_heat")).abs() < 0.2,
-        "{made}"
-    );
+    // In the seconds of the cold moves the screw grows by some tenths of a micrometre.
+    let grown = max(0, "without_heat") - max(0, "with_heat");
+    assert!((0.0..0.6).contains(&grown), "{made}");
     assert!(
         max(1, "without_heat") > 20.0 && max(1, "with_heat") < 3.0,
         "{made}"
