@@ -1,26 +1,23 @@
-//! Heat beside motions: slow logs, growth along them, and both corrections, against a second simulator that shares no
-//! code (`independent_axis::HeatedScrew`: a rod of 5 mm cells, the nut where it is, losses of each instant).
+//! Slow logs and growth along them, against a second simulator that shares no code
+//! (`independent_axis::HeatedScrew`: a rod of 5 mm cells, the nut where it is, losses of each instant).
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use axis_log::{Channel, Log};
-use axis_pipeline::heat::{
-    FollowOptions, HeatError, ModelHeat, SlowLog, SlowLogOptions, WarmMoves, Warmth, fit, follow,
-};
-use axis_pipeline::moves::NamedMotion;
-use axis_pipeline::strategies::{Predictors, STRATEGIES, SharedMotion, named};
-use axis_sim::{Axis, Measured};
+use axis_pipeline::heat::{FollowOptions, ModelHeat, SlowLog, SlowLogOptions, Warmth, fit, follow};
+use axis_pipeline::strategies::SharedMotion;
+use axis_sim::Axis;
 use axis_thermal::{GrowthOf, GrowthZero};
 use independent_axis::{HeatedScrew, Motion, Parameters, Random, there_and_back};
 use trajectories::{Limits, Program, Step};
 
-fn axis() -> Axis {
+pub(crate) fn axis() -> Axis {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../data/axes");
     Axis::read(&folder.join("screw-heat.toml")).unwrap()
 }
 
-fn program(from: f64, to: f64, speed: f64) -> Program {
+pub(crate) fn program(from: f64, to: f64, speed: f64) -> Program {
     let limits = Limits::new(speed, 1.0, 10.0).unwrap();
     let rest = Step::Dwell { duration: 1.0 };
     let steps = [to, from].map(|to| [Step::Move { to, limits }, rest]);
@@ -223,87 +220,181 @@ fn encoder_less_scale_tells_growth_and_the_current_tells_friction() {
     assert!(found.after.friction.unwrap() < 0.02, "{:?}", found.after);
 }
 
-/// The second simulator warms the machine up.
-struct Brute(HeatedScrew, Motion);
-
-impl Warmth for Brute {
-    fn until(&mut self, time: f64) -> Result<(), HeatError> {
-        let more = time - self.0.time;
-        if more > 0.0 {
-            self.0.run(Some(&self.1), more, |_| 20.0);
-        }
-        Ok(())
-    }
-
-    fn friction(&self) -> [f64; 2] {
-        self.0.friction_factors(0.7)
-    }
-
-    fn growth(&self, x: f64) -> f64 {
-        self.0.growth(20.0, x)
-    }
-}
-
-/// Each half alone leaves more than 50 µm after ten minutes; both leave what a plan leaves on the cold axis.
+/// Where a log is cut off by chance does not count.
 #[test]
-fn growth_and_friction_are_planned_together() {
+fn a_second_more_of_a_log_changes_little() {
     let axis = axis();
-    let stroke: SharedMotion = Arc::new(program(0.45, 0.95, 0.2));
-    let mut truth = Brute(
-        HeatedScrew::assumed(20.0),
-        there_and_back(0.45, 0.95, 0.2, 1.0),
-    );
-    let warm = WarmMoves::new(&axis, &mut truth, &[0.0, 600.0], 8.0).unwrap();
-    let moves = [NamedMotion {
-        name: "stroke".to_owned(),
-        motion: stroke.clone(),
-        learned: None,
-    }];
-    let run = |name: &str, heat: bool| {
-        let kind = named(STRATEGIES, name).unwrap();
-        let mut strategy = kind.strategy(&Predictors::of(&axis)).unwrap();
-        let model = ModelHeat::new(&axis, &[stroke.clone()], 20.0).unwrap();
-        let model = heat.then_some(model);
-        let passes = warm.run(&mut *strategy, &moves, model, |_: &mut Measured| (), || ());
-        let passes = passes.unwrap();
-        [0, 1].map(|pass| passes[pass][0].figures.max)
+    let (longer, _) = encoder_and_scale(1801.2 / 3600.0);
+    let rows = longer
+        .time()
+        .iter()
+        .filter(|t| **t <= 1800.0 + 1e-6)
+        .count();
+    let channels = [
+        "t_s",
+        "position_ref_mm",
+        "position_m",
+        "motor_angle_rad",
+        "iq_a",
+    ];
+    let first = channels.map(|name| match name {
+        "t_s" => (name, longer.time()[..rows].to_vec()),
+        name => (name, longer.channel(name).unwrap()[..rows].to_vec()),
+    });
+    let shorter = log(first.to_vec());
+    let fitted = |log: &Log, held_out: f64| {
+        let slow = SlowLog::new(&axis, log, &SlowLogOptions::default()).unwrap();
+        let stretches = slow.stretches(&axis.thermal_model().unwrap()).stretches;
+        assert_eq!(stretches.len(), 6);
+        let found = fit(&axis, &[slow], held_out).unwrap();
+        let factors = found.fitted.factors.iter().map(|(_, factor)| factor.ln());
+        (factors.collect::<Vec<f64>>(), found.after)
     };
-    let (blind, both) = (run("plan", false), run("plan", true));
-    println!("{blind:?} {both:?}");
-    // In the eight seconds of a cold stroke the screw grows by a micrometre.
-    assert!(both[0] < 2.0 && blind[0] < 3.0, "{blind:?} {both:?}");
-    assert!(blind[1] > 70.0 && both[1] < 2.5, "{blind:?} {both:?}");
+    let (all, all_longer) = (fitted(&shorter, 0.0).0, fitted(&longer, 0.0).0);
+    for (a, b) in all.iter().zip(&all_longer) {
+        assert!((a - b).abs() < 0.03, "{all:?} {all_longer:?}");
+    }
+    let (held, held_longer) = (fitted(&shorter, 0.3).1, fitted(&longer, 0.3).1);
+    println!("{held:?} {held_longer:?}");
+    assert_eq!(held.readings, held_longer.readings);
+    assert!(
+        (held.rms - held_longer.rms).abs() < 0.2e-6,
+        "{held:?} {held_longer:?}"
+    );
+    let [a, b] = [held, held_longer].map(|held| held.friction.unwrap());
+    assert!((a - b).abs() < 0.003, "{a} {b}");
 }
 
-/// Along a motion of minutes growth and friction change on the way.
+/// A correction subtracts the growth that the controller does not see: of the screw with the motor's encoder, of the
+/// scale with a scale. Both by the growth of the thermal network itself.
 #[test]
-fn what_is_ahead_of_a_long_motion_is_what_the_network_does() {
-    let axis = axis();
+fn a_reference_is_corrected_by_the_growth_that_the_axis_does_not_see() {
+    let text = include_str!("../../../data/axes/screw-heat.toml");
+    let by_scale = text.replace("feedback = \"motor\"", "feedback = \"load\"");
+    assert_ne!(text, by_scale);
     let one = program(0.45, 0.95, 0.2);
-    let limits = Limits::new(0.2, 1.0, 10.0).unwrap();
-    let rest = Step::Dwell { duration: 1.0 };
-    let steps = [0.95, 0.45]
-        .map(|to| [Step::Move { to, limits }, rest])
-        .concat();
-    let long = Program::new(0.45, steps.repeat(20)).unwrap();
-    let mut heat = ModelHeat::new(&axis, &[Arc::new(one) as SharedMotion], 20.0).unwrap();
-    let ahead = heat.ahead(&long).unwrap();
-    let end = trajectories::Motion::duration(&long);
-    assert_eq!(ahead.growth(0.0, 0.9)[0], 0.0);
-    for share in [0.5, 1.0] {
-        heat.until(share * end).unwrap();
-        let [growth, slope] = ahead.growth(share * end, 0.9);
+    let duration = trajectories::Motion::duration(&one);
+    let time: Vec<f64> = (0..=12_000).map(|k| 0.1 * f64::from(k)).collect();
+    let at = |t: &f64| trajectories::Motion::at(&one, t.rem_euclid(duration)).position;
+    let position: Vec<f64> = time.iter().map(at).collect();
+    let log = log(vec![("t_s", time), ("position_ref_m", position)]);
+    let last = |text: &str| {
+        let axis = Axis::parse("axis.toml", text).unwrap();
+        let slow = SlowLog::new(&axis, &log, &SlowLogOptions::default()).unwrap();
+        let end = slow.reference().unwrap()[12_000];
+        let how = FollowOptions {
+            window: 60.0,
+            homed: 0.0,
+            probe_each: None,
+            places: vec![end],
+        };
+        let found = follow(axis.thermal_model().unwrap(), &slow, &how).unwrap();
+        let last = found.rows.last().unwrap();
+        // A minute late, as the prediction is.
+        let mut heat =
+            ModelHeat::new(&axis, &[Arc::new(one.clone()) as SharedMotion], 20.0).unwrap();
+        heat.until(1140.0).unwrap();
+        (last.at_reference.unwrap(), last.growth[0], heat.growth(end))
+    };
+    let (corrected, screw, unseen) = last(text);
+    assert!(
+        corrected > 15e-6 && corrected == screw,
+        "{corrected:e} {screw:e}"
+    );
+    assert!(
+        (corrected - unseen).abs() < 0.5e-6,
+        "{corrected:e} {unseen:e}"
+    );
+    let (corrected, screw, unseen) = last(&by_scale);
+    assert!(screw > 15e-6, "{screw:e}");
+    assert!(corrected > 0.0 && corrected < 2e-6, "{corrected:e}");
+    assert!(
+        (corrected - unseen).abs() < 0.02e-6,
+        "{corrected:e} {unseen:e}"
+    );
+}
+
+/// A machine that grows 5 µm more than its model: after one probing of two places, ten seconds apart, the rest is
+/// predicted. In the minute and a half until the next row the machine grows by more than that.
+#[test]
+fn what_a_probing_finds_is_off_at_its_own_time() {
+    let axis = axis();
+    let motion = there_and_back(0.45, 0.95, 0.2, 1.0);
+    let duties = [Arc::new(program(0.45, 0.95, 0.2)) as SharedMotion];
+    let options = SlowLogOptions {
+        duties: &duties,
+        ..SlowLogOptions::default()
+    };
+    let along = |rows: &[(f64, f64)], probe_each| {
+        let mut machine = HeatedScrew::assumed(20.0);
+        let read = |(time, place): &(f64, f64)| {
+            machine.run(Some(&motion), time - machine.time, |_| 20.0);
+            machine.growth(20.0, *place) + 5e-6
+        };
+        let growth: Vec<f64> = rows.iter().map(read).collect();
+        let log = log(vec![
+            ("t_s", rows.iter().map(|row| row.0).collect()),
+            ("duty_1", vec![1.0; rows.len()]),
+            ("place_m", rows.iter().map(|row| row.1).collect()),
+            ("growth_m", growth.clone()),
+        ]);
+        let slow = SlowLog::new(&axis, &log, &options).unwrap();
+        let how = FollowOptions {
+            probe_each,
+            places: vec![0.95],
+            ..FollowOptions::default()
+        };
+        let found = follow(axis.thermal_model().unwrap(), &slow, &how).unwrap();
+        (found, growth)
+    };
+    let rows = [
+        (0.0, 0.95),
+        (300.0, 0.95),
+        (310.0, 0.5),
+        (400.0, 0.95),
+        (500.0, 0.5),
+    ];
+    let (found, growth) = along(&rows, Some(300.0));
+    assert!(growth[3] - growth[1] > 8e-6, "{growth:?}");
+    assert_eq!((found.probings, found.readings.len()), (1, 3));
+    for [place, read, predicted] in &found.readings[1..] {
         assert!(
-            (growth - heat.growth(0.9)).abs() < 0.3e-6,
-            "{growth} {}",
-            heat.growth(0.9)
+            (read - predicted).abs() < 0.5e-6,
+            "{place}: {read:e} {predicted:e}"
         );
-        let rise = (heat.growth(0.91) - heat.growth(0.89)) / 0.02;
-        assert!((slope / rise - 1.0).abs() < 0.02, "{slope} {rise}");
-        for (a, b) in ahead.friction(share * end).iter().zip(heat.friction()) {
-            assert!((a - b).abs() < 0.01, "{a} {b}");
-        }
     }
+    // A probing that ends the log counts, and the last row goes through it.
+    let (found, growth) = along(&rows[..2], Some(300.0));
+    assert_eq!((found.probings, found.readings.len()), (1, 1));
+    let last = found.rows.last().unwrap();
+    assert!(
+        (last.growth[0] - growth[1]).abs() < 1e-9,
+        "{last:?} {growth:?}"
+    );
+    let (found, _) = along(&rows[..2], None);
+    assert_eq!((found.probings, found.readings.len()), (0, 2));
+}
+
+#[test]
+fn probing_without_a_time_between_is_refused() {
+    let axis = axis();
+    let log = log(vec![("t_s", vec![0.0, 300.0]), ("duty_1", vec![0.0, 0.0])]);
+    let slow = SlowLog::new(&axis, &log, &SlowLogOptions::default()).unwrap();
+    let along = |probe_each| {
+        let how = FollowOptions {
+            probe_each: Some(probe_each),
+            ..FollowOptions::default()
+        };
+        follow(axis.thermal_model().unwrap(), &slow, &how)
+    };
+    for each in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let error = along(each).unwrap_err().to_string();
+        assert!(
+            error.contains("probe_each") && error.contains("valid: above 0 s"),
+            "{error}"
+        );
+    }
+    assert!(along(300.0).is_ok());
 }
 
 #[test]

@@ -6,3 +6,4 @@ mod learning;
 mod moves;
 mod robustness;
 mod samples;
+mod warm;

@@ -18,6 +18,16 @@ pub enum ThermalError {
         /// What would be valid.
         valid: &'static str,
     },
+    /// A value of a log is not a number.
+    #[error("the {channel} in stretch {stretch} of the log is {value}; valid: finite")]
+    Log {
+        /// Number of the stretch, from 1.
+        stretch: usize,
+        /// Which of its values.
+        channel: &'static str,
+        /// As given.
+        value: f64,
+    },
     /// A duty was recorded for another screw.
     #[error(
         "the duty has {found} places along the screw, and the model has {expected}; valid: a duty that begins as ThermalModel::duty of this model"

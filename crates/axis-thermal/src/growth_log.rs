@@ -1,7 +1,7 @@
 //! A log of hours: duties, the growth that was read meanwhile, and what a model makes of them.
 
 use crate::duty::Duty;
-use crate::error::{ThermalError, check};
+use crate::error::ThermalError;
 use crate::growth::Growth;
 use crate::model::{ThermalModel, ThermalState};
 use crate::run::ThermalAccuracy;
@@ -87,6 +87,8 @@ pub struct FollowedGrowth {
 pub struct FollowedFriction {
     /// Number of its stretch, from 0.
     pub stretch: usize,
+    /// How long that is, s.
+    pub duration: f64,
     /// As it was read, W.
     pub found: f64,
     /// As the model has it, W.
@@ -112,6 +114,40 @@ impl FollowedLog {
 /// Positions nearer than this count as one, m.
 const SAME_PLACE: f64 = 1e-6;
 
+/// What the readings of a log count from, place by place.
+#[derive(Clone, Debug)]
+pub struct GrowthZeros {
+    zero: GrowthZero,
+    /// First position, reading and prediction of each place.
+    first: Vec<[f64; 3]>,
+}
+
+impl GrowthZeros {
+    /// Before the first reading.
+    pub fn new(zero: GrowthZero) -> Self {
+        let first = Vec::new();
+        Self { zero, first }
+    }
+
+    /// Position, reading and prediction (m) as they are compared: less those that they count from. None for a
+    /// reading that the later ones at its place count from.
+    pub fn counted(&mut self, reading: [f64; 3]) -> Option<[f64; 3]> {
+        let [place, found, predicted] = reading;
+        if self.zero == GrowthZero::Begin {
+            return Some(reading);
+        }
+        let known = self
+            .first
+            .iter()
+            .find(|at| (at[0] - place).abs() < SAME_PLACE);
+        let Some(zero) = known else {
+            self.first.push(reading);
+            return None;
+        };
+        Some([place, found - zero[1], predicted - zero[2]])
+    }
+}
+
 impl GrowthLog {
     /// The first stretches, as a log.
     #[must_use]
@@ -123,24 +159,31 @@ impl GrowthLog {
         }
     }
 
-    /// How many readings of growth it has.
-    pub fn readings(&self) -> usize {
-        let stretches = self.stretches.iter();
-        stretches.map(|stretch| stretch.found.len()).sum()
+    /// How many readings of growth a model is compared with: not those that others count from.
+    pub fn comparisons(&self) -> usize {
+        let mut zeros = GrowthZeros::new(self.zero);
+        let all = self.stretches.iter().flat_map(|stretch| &stretch.found);
+        all.filter_map(|&[place, found]| zeros.counted([place, found, 0.0]))
+            .count()
     }
 
     pub(crate) fn validate(&self) -> Result<(), ThermalError> {
-        for stretch in &self.stretches {
-            let read = stretch.found.iter().flatten().copied();
-            let numbers = read.chain(stretch.air).chain(stretch.friction);
-            for value in numbers {
-                check(
-                    value.is_finite(),
-                    "a number of the log",
-                    value,
-                    "",
-                    "finite",
-                )?;
+        for (number, stretch) in self.stretches.iter().enumerate() {
+            let found = stretch.found.iter();
+            let read = found.flat_map(|&[place, growth]| [("place", place), ("growth", growth)]);
+            let air = stretch.air.map(|air| ("temperature of the air", air));
+            let friction = stretch
+                .friction
+                .map(|power| ("power of the friction", power));
+            let duration = [("duration", stretch.duration)];
+            for (channel, value) in read.chain(air).chain(friction).chain(duration) {
+                if !value.is_finite() {
+                    return Err(ThermalError::Log {
+                        stretch: number + 1,
+                        channel,
+                        value,
+                    });
+                }
             }
         }
         Ok(())
@@ -158,7 +201,7 @@ impl ThermalModel {
         let cold = self.at_rest(first);
         let mut state = cold.clone();
         let mut followed = FollowedLog::default();
-        let mut zeros: Vec<[f64; 3]> = Vec::new();
+        let mut zeros = GrowthZeros::new(log.zero);
         let mut at_work: Option<(&Duty, AxisAtWork)> = None;
         for (number, stretch) in log.stretches.iter().enumerate() {
             // The same duty goes on in the same network.
@@ -177,6 +220,7 @@ impl ThermalModel {
                     let after = friction_power(&network, &state);
                     followed.friction.push(FollowedFriction {
                         stretch: number,
+                        duration: stretch.duration,
                         found,
                         predicted: (before + 4.0 * middle + after) / 6.0,
                     });
@@ -185,22 +229,15 @@ impl ThermalModel {
             at_work = Some((&stretch.duty, network));
             for &[place, found] in &stretch.found {
                 let predicted = self.growth(&cold, &state, place).read(log.of);
-                let reading = [place, found, predicted];
-                let known = zeros.iter().find(|at| (at[0] - place).abs() < SAME_PLACE);
-                let zero = match (log.zero, known) {
-                    (GrowthZero::Begin, _) => [0.0; 3],
-                    (GrowthZero::FirstAtPlace, Some(zero)) => *zero,
-                    (GrowthZero::FirstAtPlace, None) => {
-                        zeros.push(reading);
-                        continue;
-                    }
+                let Some([_, found, predicted]) = zeros.counted([place, found, predicted]) else {
+                    continue;
                 };
                 followed.growth.push(FollowedGrowth {
                     stretch: number,
                     time: state.time,
                     place,
-                    found: found - zero[1],
-                    predicted: predicted - zero[2],
+                    found,
+                    predicted,
                 });
             }
         }

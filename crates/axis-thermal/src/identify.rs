@@ -6,8 +6,11 @@
 //! how friction falls; the power that the motor spends on friction says that.
 //!
 //! ```text
-//! least   Σ ((δ_model(x, t) − δ_log)/σ)² + Σ ((P_model/P_log − 1)/ρ)² + Σ (ln f_k/s)²     over the factors f_k
+//! least   Σ ((δ_model(x, t) − δ_log)/σ)² + Σ (t_i/t̄) ((P_model/P_log − 1)/ρ)² + Σ (ln f_k/s)²     over the factors f_k
 //! ```
+//!
+//! t_i is the duration of the stretch that a power is the mean of, t̄ = Σ t_i²/Σ t_i over all logs: in seconds a mean
+//! says little, and stretches of the same duration count alike.
 //!
 //! by Levenberg and Marquardt's method over ln f, with differences for the derivatives.
 
@@ -24,7 +27,8 @@ use crate::unknown::ThermalUnknown;
 pub struct GrowthFit {
     /// σ: by which growth in the log and in the best model differ, m.
     pub uncertainty: f64,
-    /// ρ: the share by which the friction's power in the log and in the best model differ.
+    /// ρ: the share by which the friction's power in the log and in the best model differ, over a stretch of the logs'
+    /// usual duration.
     pub friction_uncertainty: f64,
     /// s: by which the logarithms of the factors may differ from 0.
     pub prior: f64,
@@ -60,7 +64,7 @@ impl ThermalParameters {
     /// all bodies begin at the first air's temperature.
     ///
     /// # Errors
-    /// [`ThermalError`] if a log's duties are of another screw, nothing was read in them, or the
+    /// [`ThermalError`] if a log's duties are of another screw, no growth in them can be compared, or the
     /// numbers make no model.
     pub fn fit(
         &self,
@@ -68,9 +72,10 @@ impl ThermalParameters {
         unknowns: &[ThermalUnknown],
         how: &GrowthFit,
     ) -> Result<FittedGrowth, ThermalError> {
-        let found: usize = logs.iter().map(GrowthLog::readings).sum();
-        let valid = "a log with growth at one place or more";
-        check(found > 0, "number of growths read", found as f64, "", valid)?;
+        let found: usize = logs.iter().map(GrowthLog::comparisons).sum();
+        let valid = "a log with growth at one place or more; at one place twice or more, if it counts from the first reading there";
+        let name = "number of growths to compare";
+        check(found > 0, name, found as f64, "", valid)?;
         check(
             how.uncertainty > 0.0,
             "uncertainty",
@@ -96,7 +101,7 @@ impl ThermalParameters {
         Ok(FittedGrowth {
             parameters,
             factors: factors.collect(),
-            rms: (squares / errors.len().max(1) as f64).sqrt(),
+            rms: (squares / errors.len() as f64).sqrt(),
         })
     }
 }
@@ -133,13 +138,22 @@ impl Problem<'_> {
     /// Model less log over their uncertainties, and the prior's.
     fn residuals(&self, logarithms: &DVector<f64>) -> Result<DVector<f64>, ThermalError> {
         let mut all = Vec::new();
-        for log in self.followed(logarithms)? {
-            all.extend(log.errors().map(|error| error / self.how.uncertainty));
-            // A standstill has no friction to compare.
-            let worked = log.friction.iter().filter(|read| read.found > 0.0);
+        let followed = self.followed(logarithms)?;
+        // A standstill has no friction to compare.
+        let powers = || followed.iter().flat_map(|log| &log.friction);
+        let worked = || powers().filter(|read| read.found > 0.0);
+        let total: f64 = worked().map(|read| read.duration).sum();
+        let squares: f64 = worked().map(|read| read.duration * read.duration).sum();
+        let usual = squares / total;
+        all.extend(
+            followed
+                .iter()
+                .flat_map(|log| log.errors().map(|error| error / self.how.uncertainty)),
+        );
+        all.extend(worked().map(|read| {
             let share = self.how.friction_uncertainty;
-            all.extend(worked.map(|read| (read.predicted / read.found - 1.0) / share));
-        }
+            (read.duration / usual).sqrt() * (read.predicted / read.found - 1.0) / share
+        }));
         all.extend(logarithms.iter().map(|l| l / self.how.prior));
         Ok(DVector::from_vec(all))
     }

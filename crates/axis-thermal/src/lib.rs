@@ -84,6 +84,7 @@ pub use friction::{FrictionLaws, TemperatureLaw};
 pub use growth::{Growth, ThermalForce};
 pub use growth_log::{
     FollowedFriction, FollowedGrowth, FollowedLog, GrowthLog, GrowthOf, GrowthStretch, GrowthZero,
+    GrowthZeros,
 };
 pub use identify::{FittedGrowth, GrowthFit};
 pub use model::{HeatNode, ThermalModel, ThermalState};

@@ -196,25 +196,93 @@ fn probing_sets_the_prediction_right() {
     );
 }
 
+/// A mean of friction over a second, which a stroke makes wrong, says next to nothing beside those of minutes.
 #[test]
-fn a_log_without_growth_is_refused() {
+fn friction_counts_by_the_duration_of_its_stretch() {
+    let mut log = GrowthLog {
+        stretches: hours(&HeatHours::to_fit(), &[0.5, 1.1], 1, 0.5e-6).log,
+        ..GrowthLog::default()
+    };
+    log.stretches.truncate(6);
+    let fall = |log: &GrowthLog| {
+        let logs = std::slice::from_ref(log);
+        let fit = assumed().fit(logs, &[ThermalUnknown::ViscousFall], &GrowthFit::default());
+        fit.unwrap().factors[0].1
+    };
+    let before = fall(&log);
+    let last = log.stretches.last().unwrap().clone();
+    log.stretches.push(GrowthStretch {
+        duration: 1.2,
+        found: Vec::new(),
+        friction: last.friction.map(|power| 1.5 * power),
+        ..last
+    });
+    let after = fall(&log);
+    println!("{before} {after}");
+    assert!((after / before - 1.0).abs() < 0.02, "{before} {after}");
+}
+
+#[test]
+fn a_log_with_a_value_that_is_no_number_names_it() {
     let model = ThermalModel::new(assumed()).unwrap();
     let stretch = GrowthStretch {
         duty: duty(&model, None),
         duration: 300.0,
         air: [20.0; 2],
-        found: Vec::new(),
+        found: vec![[0.5, 1e-6]],
+        friction: Some(100.0),
+    };
+    let refused = |change: fn(&mut GrowthStretch)| {
+        let mut stretches = vec![stretch.clone(), stretch.clone()];
+        change(&mut stretches[1]);
+        let log = GrowthLog {
+            stretches,
+            ..GrowthLog::default()
+        };
+        model.follow(&log).unwrap_err().to_string()
+    };
+    for (message, channel) in [
+        (refused(|s| s.found[0][0] = f64::NAN), "place"),
+        (refused(|s| s.found[0][1] = f64::NAN), "growth"),
+        (refused(|s| s.air[1] = f64::NAN), "temperature of the air"),
+        (
+            refused(|s| s.friction = Some(f64::NAN)),
+            "power of the friction",
+        ),
+        (refused(|s| s.duration = f64::NAN), "duration"),
+    ] {
+        let words = format!("the {channel} in stretch 2 of the log is NaN");
+        assert!(message.contains(&words), "{message}");
+    }
+}
+
+#[test]
+fn a_log_without_growth_is_refused() {
+    let model = ThermalModel::new(assumed()).unwrap();
+    let duty = duty(&model, None);
+    let stretch = |found: &[[f64; 2]]| GrowthStretch {
+        duty: duty.clone(),
+        duration: 300.0,
+        air: [20.0; 2],
+        found: found.to_vec(),
         friction: None,
     };
-    let log = GrowthLog {
-        stretches: vec![stretch],
+    let log = |stretches: Vec<GrowthStretch>, zero| GrowthLog {
+        stretches,
+        zero,
         ..GrowthLog::default()
     };
-    let error = assumed().fit(&[log], &ThermalUnknown::ALL, &GrowthFit::default());
-    assert!(
-        error
-            .unwrap_err()
-            .to_string()
-            .contains("valid: a log with growth")
-    );
+    let refused = |log: GrowthLog| {
+        let error = assumed().fit(&[log], &ThermalUnknown::ALL, &GrowthFit::default());
+        error.unwrap_err().to_string()
+    };
+    let message = refused(log(vec![stretch(&[])], GrowthZero::Begin));
+    assert!(message.contains("valid: a log with growth"), "{message}");
+    // Each reading is the zero of its place: nothing is left to compare.
+    let each_once = || vec![stretch(&[[0.5, 1e-6]]), stretch(&[[0.8, 2e-6]])];
+    let first = log(each_once(), GrowthZero::FirstAtPlace);
+    assert_eq!(first.comparisons(), 0);
+    let message = refused(first);
+    assert!(message.contains("twice or more"), "{message}");
+    assert_eq!(log(each_once(), GrowthZero::Begin).comparisons(), 2);
 }

@@ -8,32 +8,21 @@ use axis_pipeline::heat::{
 };
 use axis_pipeline::strategies::SharedMotion;
 use axis_sim::Axis;
-use feed_axis::commands::heat::{HeatRun, places};
+use feed_axis::commands::heat::{GivenAs, HeatRun, LONGEST, places};
 use feed_axis::commands::heat_fit::Fitted;
 use feed_axis::commands::heat_predict::Predicted;
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList, PyTuple};
+use pyo3::types::PyDict;
 use toml::{Table, Value};
 
 use crate::arrays::line;
 use crate::axis::PyAxis;
 use crate::errors::{AxisError, LogError, MotionError, SimulationError, raise, readable};
-use crate::log::{Renamed, columns};
+use crate::log::{Renamed, columns, each_log};
 use crate::long::long;
 use crate::loops::plain;
 use crate::motion::AnyMotion;
-
-/// Window of the predictor, s.
-const WINDOW: f64 = 60.0;
-
-/// A log or a list of logs.
-fn each<'py>(given: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, PyAny>>> {
-    match given.is_instance_of::<PyList>() || given.is_instance_of::<PyTuple>() {
-        true => given.try_iter()?.collect(),
-        false => Ok(vec![given.clone()]),
-    }
-}
 
 /// A log as it stands: nothing of hours is evened or taken out.
 fn slow(given: &Bound<'_, PyAny>, axis: &Axis, name: String) -> PyResult<(String, Log)> {
@@ -68,9 +57,16 @@ fn reading<'a>(
     })
 }
 
-/// What a command refused, in its words.
+/// How positions are given here.
+const AT_M: GivenAs = GivenAs {
+    name: "at_m",
+    unit: "m",
+    metres: 1.0,
+};
+
+/// What a command refused, in its words, and what caused it.
 fn refused(why: impl std::fmt::Display) -> PyErr {
-    SimulationError::new_err(why.to_string())
+    SimulationError::new_err(format!("{why:#}"))
 }
 
 #[pymethods]
@@ -86,6 +82,11 @@ impl PyAxis {
         at_m: Option<&Bound<'py, PyAny>>,
         losses: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
+        if !(duration_s > 0.0 && duration_s <= LONGEST) {
+            return Err(SimulationError::new_err(format!(
+                "duration_s is {duration_s}; valid: above 0 s, at most {LONGEST} (115 days)"
+            )));
+        }
         let is_simulated = match losses {
             "reference" => false,
             "simulation" => true,
@@ -97,7 +98,7 @@ impl PyAxis {
         };
         let at = at_m.map(|at| line::<SimulationError>(at, "at_m"));
         let at: Vec<f64> = at.transpose()?.unwrap_or_default();
-        let at: Vec<f64> = at.into_iter().map(|x| 1e3 * x).collect();
+        let places = places(&self.axis, &at, AT_M).map_err(refused)?;
         let motion: SharedMotion = match motion {
             Some(motion) => motion.on(&self.axis)?,
             None => {
@@ -118,7 +119,7 @@ impl PyAxis {
                 name: "a motion without end".to_owned(),
                 duration: duration_s,
                 air: air_degc,
-                places: places(&axis, &at).map_err(refused)?,
+                places,
                 is_simulated,
             };
             run.on(&axis).map_err(refused)
@@ -144,7 +145,7 @@ impl PyAxis {
         reading(&[], air_degc, probe_against, probe_zero)?;
         let named =
             |(i, log): (usize, Bound<'py, PyAny>)| slow(&log, &self.axis, format!("log {}", i + 1));
-        let logs: Vec<(String, Log)> = each(logs)?
+        let logs: Vec<(String, Log)> = each_log(logs)?
             .into_iter()
             .enumerate()
             .map(named)
@@ -192,15 +193,22 @@ impl PyAxis {
     ) -> PyResult<Bound<'py, PyDict>> {
         let duties = on(&self.axis, duties)?;
         let at = at_m.map(|at| line::<LogError>(at, "at_m")).transpose()?;
+        let at = match at.unwrap_or_default() {
+            none if none.is_empty() => none,
+            at => {
+                let within = places(&self.axis, &at, AT_M);
+                within.map_err(|why| LogError::new_err(format!("{why:#}")))?
+            }
+        };
         let (name, log) = slow(log, &self.axis, "the log".to_owned())?;
         reading(&[], air_degc, probe_against, probe_zero)?;
         let axis = self.axis.clone();
         let (against, zero) = (probe_against.to_owned(), probe_zero.to_owned());
         let how = FollowOptions {
-            window: WINDOW,
             homed: homed_s,
             probe_each: probe_each_s,
-            places: at.unwrap_or_default(),
+            places: at,
+            ..FollowOptions::default()
         };
         let (found, figures) = long(py, None, move |_| {
             let reading = reading(&duties, air_degc, &against, &zero)?;

@@ -16,8 +16,16 @@ def test_an_hour_is_that_of_the_command(root: Path) -> None:
     assert hour["viscous_factor"][-1] == pytest.approx(0.781, abs=0.001)
     with pytest.raises(fa.SimulationError, match="valid"):
         axis.heat(losses="none")  # type: ignore[arg-type]
-    with pytest.raises(fa.SimulationError, match="between 0 and 1500 mm"):
+    with pytest.raises(fa.SimulationError, match="at_m 1.6: the table is between 0 and 1.5 m"):
         axis.heat(at_m=[1.6])
+    for duration in (0.0, -1.0, float("nan"), float("inf")):
+        with pytest.raises(fa.SimulationError, match="duration_s is .*valid: above 0"):
+            axis.heat(duration_s=duration)
+    # What was refused, and why.
+    away = axis.to_dict()
+    away["thermal"]["viscous_fall_percent_per_k"] = -15
+    with pytest.raises(fa.SimulationError, match="come to rest thermally: after .* losses grow"):
+        fa.Axis.from_dict(away).heat(duration_s=1e6)
 
 
 def test_a_fitted_model_predicts_hours_that_were_not_fitted(root: Path) -> None:
@@ -32,7 +40,12 @@ def test_a_fitted_model_predicts_hours_that_were_not_fitted(root: Path) -> None:
     assert after["figures"]["greatest_um"] < 0.3 * before["figures"]["greatest_um"]
     assert np.shape(after["growth_at_m"]) == (1, len(after["t_s"]))
     right = axis.predict_growth(check, duties=duties, probe_each_s=3600.0)
-    assert right["figures"]["probings"] == 2
+    assert right["figures"]["probings"] == 3
+    for each in (0.0, -1.0, float("nan")):
+        with pytest.raises(fa.LogError, match="probe_each is .*valid: above 0"):
+            axis.predict_growth(check, duties=duties, probe_each_s=each)
+    with pytest.raises(fa.LogError, match="at_m 1.6: the table"):
+        axis.predict_growth(check, duties=duties, at_m=[1.6])
     with pytest.raises(fa.LogError, match="duty 6"):
         axis.predict_growth(check, duties=duties[:5])
 

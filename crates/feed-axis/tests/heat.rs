@@ -1,6 +1,6 @@
 //! `heat`: hours of a duty.
 
-use crate::common::{refuse, run, succeed};
+use crate::common::{refuse, root, run, succeed};
 
 const SCREW: &str = "data/axes/screw-heat.toml";
 
@@ -198,7 +198,7 @@ fn a_fitted_axis_file_predicts_the_log() {
     assert_eq!(fitted["readings"], 18);
     assert_eq!(fitted["held_out_readings"], 7);
     let error = |of: &serde_json::Value| of["greatest_um"].as_f64().unwrap();
-    assert!(error(&fitted["assumed_numbers"]) > 3.0, "{fitted}");
+    assert!(error(&fitted["assumed_numbers"]) > 2.0, "{fitted}");
     assert!(error(&fitted["fitted_numbers"]) < 0.5, "{fitted}");
     let text = std::fs::read_to_string(&out).unwrap();
     assert!(
@@ -207,6 +207,19 @@ fn a_fitted_axis_file_predicts_the_log() {
     );
     assert!(
         text.contains("Held out: the last 25 %, 7 readings"),
+        "{text}"
+    );
+    // Fitted again: one such head, and the comments of the first file below it.
+    let again = folder.path().join("again.toml").display().to_string();
+    found(&["--axis", &out, "--fit", &log, "--out", &again]);
+    let text = std::fs::read_to_string(&again).unwrap();
+    for once in ["heat --fit`", "Held out:", "Such logs do not"] {
+        assert_eq!(text.matches(once).count(), 1, "{once}: {text}");
+    }
+    let first = std::fs::read_to_string(root().join(SCREW)).unwrap();
+    let line = first.lines().next().unwrap();
+    assert!(
+        text.contains(&format!("same growth.\n\n{line}\n")),
         "{text}"
     );
     // The file is an axis file, and predicts what it was fitted to.
@@ -238,8 +251,12 @@ fn a_fitted_axis_file_predicts_the_log() {
         &log,
         "--probe-each",
         "30min",
+        "--homed",
+        "30min",
     ];
     let words = succeed(&arguments);
+    assert!(words.contains("since 1800 s"), "{words}");
+    // At 60, 90 and 120 minutes, the last at the log's end.
     assert!(words.contains("set right by 3 probings"), "{words}");
 }
 
@@ -266,11 +283,33 @@ fn slow_logs_that_cannot_be_used_are_refused() {
             "valid: 0 for standstill, or from 1 to 1",
         ),
         (vec!["--predict", "none.csv"], "none.csv"),
+        (
+            vec!["--predict", &log, "--trajectory", "9"],
+            "--trajectory 9: there is no such trajectory",
+        ),
+        (
+            vec!["--predict", &log, "--program", "no-duty.toml"],
+            "no-duty.toml",
+        ),
     ] {
         let mut all = vec!["heat", "--axis", SCREW];
         all.extend(&arguments);
         let message = refuse(&all);
         assert!(message.contains(words), "{arguments:?}: {message}");
+    }
+    // Options for logs without a log.
+    for arguments in [
+        ["--out", &out],
+        ["--duties", &log],
+        ["--probe-against", "bed"],
+        ["--probe-zero", "first"],
+        ["--probe-each", "30min"],
+        ["--homed", "30min"],
+        ["--held-out", "10"],
+    ] {
+        let message = refuse(&[&["heat", "--axis", SCREW], &arguments[..]].concat());
+        let asks = message.contains("--fit") || message.contains("--predict");
+        assert!(asks, "{arguments:?}: {message}");
     }
     assert!(!std::path::Path::new(&out).exists());
 }
@@ -316,10 +355,9 @@ fn moves_are_made_on_an_axis_that_warms_up() {
             .unwrap()
     };
     assert_eq!(made["passes"].as_array().unwrap().len(), 2);
-    assert!(
-        (max(0, "with_heat") - max(0, "without_heat")).abs() < 0.2,
-        "{made}"
-    );
+    // In the seconds of the cold moves the screw grows by some tenths of a micrometre.
+    let grown = max(0, "without_heat") - max(0, "with_heat");
+    assert!((0.0..0.6).contains(&grown), "{made}");
     assert!(
         max(1, "without_heat") > 20.0 && max(1, "with_heat") < 3.0,
         "{made}"
@@ -331,6 +369,13 @@ fn moves_are_made_on_an_axis_that_warms_up() {
             vec![program.as_str()],
             vec!["1h", "5min"],
             "do not rise",
+        ),
+        (SCREW, vec![program.as_str()], vec!["1s"], "--after"),
+        (
+            SCREW,
+            vec![program.as_str()],
+            vec!["5min", "301s"],
+            "those after 301 s would begin before those after 300 s have ended",
         ),
         (
             "data/axes/screw-datasheet.toml",

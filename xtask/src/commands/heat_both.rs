@@ -190,8 +190,8 @@ impl Warmth for OtherHeat {
         Ok(())
     }
 
-    fn friction(&self) -> [f64; 2] {
-        self.machine.friction_factors(0.7)
+    fn friction(&self) -> std::result::Result<[f64; 2], HeatError> {
+        Ok(self.machine.friction_factors(0.7))
     }
 
     fn growth(&self, x: f64) -> f64 {

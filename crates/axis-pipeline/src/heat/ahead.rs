@@ -1,6 +1,7 @@
 //! Growth and friction along a move that is to come.
 
 use axis_sim::Axis;
+use axis_sim::mechanism::Freedom;
 use axis_sim::thermal::LossModel;
 use axis_thermal::{ThermalModel, ThermalState};
 use compensator::Target;
@@ -173,22 +174,33 @@ impl HeatAhead {
 
 /// What of growth a controller does not see.
 #[derive(Clone, Copy)]
-pub(super) struct Unseen {
-    from_motor: bool,
+pub(super) enum Unseen {
+    /// That of the screw: it measures at the motor.
+    Screw,
+    /// That of the scale, which it measures by.
+    Scale,
+    /// The load turns, and growth is along lines alone.
+    Nothing,
 }
 
 impl Unseen {
     /// Of an axis that measures at the motor or by a scale.
     pub fn of(axis: &Axis) -> Result<Self, HeatError> {
-        let from_motor = axis.drive_model()?.cascade.from_motor;
-        Ok(Self { from_motor })
+        if axis.freedom() == Freedom::Rotary {
+            return Ok(Self::Nothing);
+        }
+        Ok(match axis.drive_model()?.cascade.from_motor {
+            true => Self::Screw,
+            false => Self::Scale,
+        })
     }
 
     /// m.
     pub fn read(self, growth: &axis_thermal::Growth) -> f64 {
-        match self.from_motor {
-            true => growth.screw,
-            false => growth.scale,
+        match self {
+            Self::Screw => growth.screw,
+            Self::Scale => growth.scale,
+            Self::Nothing => 0.0,
         }
     }
 }

@@ -1,8 +1,9 @@
 //! Growth along a slow log, predicted from its reference as a controller predicts it, and set right by a probe now
 //! and then.
 
-use axis_thermal::{GrowthOf, GrowthPredictor, GrowthZero, ThermalModel};
+use axis_thermal::{GrowthPredictor, GrowthZeros, ThermalModel};
 
+use super::ahead::Unseen;
 use super::{HeatError, SlowLog};
 
 /// How growth is predicted.
@@ -18,14 +19,27 @@ pub struct FollowOptions {
     pub places: Vec<f64>,
 }
 
+impl Default for FollowOptions {
+    /// A minute; homed at the begin; nothing set right; no positions.
+    fn default() -> Self {
+        Self {
+            window: 60.0,
+            homed: 0.0,
+            probe_each: None,
+            places: Vec::new(),
+        }
+    }
+}
+
 /// Growth at one row of the log.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FollowedRow {
     /// Since the log's begin, s.
     pub time: f64,
-    /// At each of the places, m.
+    /// Of the screw at each of the places, m, whatever the axis measures by.
     pub growth: Vec<f64>,
-    /// At the reference's position, m: what a correction subtracts from it. None if the log has no reference.
+    /// At the reference's position, m: what a correction subtracts from it. Growth of the screw on an axis that
+    /// measures at the motor, of the scale on one that measures by it. None if the log has no reference.
     pub at_reference: Option<f64>,
     /// Dry and viscous friction as multiples of those at the reference temperature.
     pub friction: [f64; 2],
@@ -38,14 +52,12 @@ pub struct Following {
     pub rows: Vec<FollowedRow>,
     /// Position, reading and prediction (m) of each reading that no correction was made from.
     pub readings: Vec<[f64; 3]>,
-    /// Readings that the prediction was set right by.
+    /// Probings that the prediction was set right by, each of the readings of a minute.
     pub probings: usize,
 }
 
 /// Readings so near in time to the first of a probing belong to it, s.
 const ONE_PROBING: f64 = 60.0;
-/// Positions nearer than this count as one, m.
-const SAME_PLACE: f64 = 1e-6;
 
 /// Predicts growth along a log.
 ///
@@ -64,13 +76,24 @@ pub fn follow(
             valid: "a time within the log, s since its begin",
         });
     }
+    if let Some(each) = options
+        .probe_each
+        .filter(|each| !(*each > 0.0 && each.is_finite()))
+    {
+        return Err(HeatError::Option {
+            name: "probe_each",
+            value: each,
+            valid: "above 0 s, and finite",
+        });
+    }
     let first = log.air()[0];
     let mut run = Run {
         predictor: GrowthPredictor::new(model.clone(), first, options.window)?,
+        unseen: Unseen::of(log.axis())?,
         log,
         options,
         model,
-        zeros: Vec::new(),
+        zeros: GrowthZeros::new(log.reads().1),
         probing: Vec::new(),
         probing_since: None,
         next_probing: options.probe_each.map(|each| options.homed + each),
@@ -84,10 +107,10 @@ pub fn follow(
 struct Run<'a> {
     predictor: GrowthPredictor,
     log: &'a SlowLog<'a>,
+    unseen: Unseen,
     options: &'a FollowOptions,
     model: ThermalModel,
-    /// First reading and prediction at each place, if readings count from them.
-    zeros: Vec<[f64; 3]>,
+    zeros: GrowthZeros,
     /// Positions of the probing that goes on, and by how much growth is off there, m.
     probing: Vec<[f64; 2]>,
     probing_since: Option<f64>,
@@ -120,6 +143,13 @@ impl Run<'_> {
             }
             self.found.rows.push(self.row(row));
         }
+        // A probing at the log's end sets the last row right.
+        if self.probing_since.is_some() {
+            self.set_right()?;
+            self.found.rows.pop();
+            let last = self.row(self.found.rows.len());
+            self.found.rows.push(last);
+        }
         Ok(())
     }
 
@@ -146,21 +176,11 @@ impl Run<'_> {
     }
 
     fn read(&mut self, now: f64, place: f64, read: f64) {
-        let (of, zero) = self.log.reads();
+        let (of, _) = self.log.reads();
         let predicted = self.growth(place).read(of);
-        let mut reading = [place, read, predicted];
-        if zero == GrowthZero::FirstAtPlace {
-            let known = self
-                .zeros
-                .iter()
-                .find(|z| (z[0] - place).abs() < SAME_PLACE);
-            let Some(known) = known else {
-                self.zeros.push(reading);
-                return;
-            };
-            reading[1] -= known[1];
-            reading[2] -= known[2];
-        }
+        let Some(reading) = self.zeros.counted([place, read, predicted]) else {
+            return;
+        };
         if !self.is_homed {
             return;
         }
@@ -198,7 +218,7 @@ impl Run<'_> {
         FollowedRow {
             time: self.log.time()[row],
             growth: self.options.places.iter().map(growth).collect(),
-            at_reference: position.map(|x| self.growth(x).read(GrowthOf::Screw)),
+            at_reference: position.map(|x| self.unseen.read(&self.growth(x))),
             friction: self.predictor.friction_factors(),
         }
     }

@@ -28,7 +28,7 @@ pub struct HeldOut {
 pub struct HeatFit {
     /// The model.
     pub fitted: FittedGrowth,
-    /// Readings of growth that it was fitted to.
+    /// Readings of growth that it was fitted to, without those that others count from.
     pub readings: usize,
     /// Readings of the friction's power.
     pub friction_readings: usize,
@@ -44,7 +44,7 @@ pub struct HeatFit {
 /// fitted but predicted.
 ///
 /// # Errors
-/// [`HeatError`] if `held_out` is no share, or nothing was read in the part that is fitted.
+/// [`HeatError`] if `held_out` is no share, or no growth can be compared in the part that is fitted.
 pub fn fit(axis: &Axis, logs: &[SlowLog<'_>], held_out: f64) -> Result<HeatFit, HeatError> {
     if !(0.0..=0.9).contains(&held_out) {
         return Err(HeatError::Option {
@@ -80,7 +80,7 @@ pub fn fit(axis: &Axis, logs: &[SlowLog<'_>], held_out: f64) -> Result<HeatFit, 
     }
     let stretches = || parts.iter().flat_map(|log| &log.stretches);
     Ok(HeatFit {
-        readings: parts.iter().map(GrowthLog::readings).sum(),
+        readings: parts.iter().map(GrowthLog::comparisons).sum(),
         friction_readings: stretches().filter(|s| s.friction.is_some()).count(),
         duration: stretches().map(|s| s.duration).sum(),
         fitted,

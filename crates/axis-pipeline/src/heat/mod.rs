@@ -14,6 +14,7 @@ mod readings;
 mod slow_log;
 mod warm_moves;
 
+use axis_sim::SixDigits;
 use thiserror::Error;
 
 pub use ahead::HeatAhead;
@@ -43,6 +44,21 @@ pub enum HeatError {
         value: f64,
         /// What would be valid.
         valid: &'static str,
+    },
+    /// Moves would begin before those of the time before have ended.
+    #[error(
+        "the moves take {} s, and those after {} s would begin before those after {} s have ended; valid: steps of that duration or more, from 0",
+        SixDigits(*pass),
+        SixDigits(*time),
+        SixDigits(*before)
+    )]
+    PassesOverlap {
+        /// The earlier time, s.
+        before: f64,
+        /// The time that comes too early, s.
+        time: f64,
+        /// Duration of the moves, s.
+        pass: f64,
     },
     /// Growth is followed along a screw alone.
     #[error(

@@ -104,7 +104,8 @@ pub(super) fn of_reference(
     })
 }
 
-/// Rows nearest behind each whole window, the last row among them.
+/// Rows nearest behind each whole window, and the last row. What is left behind the last whole window is a window of
+/// its own from half a window on; less is joined to the one before.
 fn windows(time: &[f64], window: f64) -> Vec<usize> {
     let last = time.len() - 1;
     let count = (time[last] / window).floor() as usize;
@@ -113,9 +114,11 @@ fn windows(time: &[f64], window: f64) -> Vec<usize> {
             .min(last)
     };
     let mut rows: Vec<usize> = (1..=count).map(at).collect();
-    if rows.last() != Some(&last) {
-        rows.push(last);
+    let left = time[last] - count as f64 * window;
+    if left < 0.5 * window {
+        rows.pop();
     }
+    rows.push(last);
     rows.dedup();
     rows
 }

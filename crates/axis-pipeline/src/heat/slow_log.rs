@@ -174,6 +174,11 @@ impl<'a> SlowLog<'a> {
         }
     }
 
+    /// The axis that it is of.
+    pub(super) fn axis(&self) -> &Axis {
+        self.axis
+    }
+
     /// Temperatures of the air at each row, °C.
     pub(super) fn air(&self) -> &[f64] {
         &self.air

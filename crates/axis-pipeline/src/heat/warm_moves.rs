@@ -32,9 +32,13 @@ pub trait Warmth {
     fn until(&mut self, time: f64) -> Result<(), HeatError>;
 
     /// Dry and viscous friction now, as multiples of the cold axis'.
-    fn friction(&self) -> [f64; 2];
+    ///
+    /// # Errors
+    /// [`HeatError`] if the duty tells no friction.
+    fn friction(&self) -> Result<[f64; 2], HeatError>;
 
-    /// By how far the table at the position `x` (m) is from where the controller's measuring has it, m.
+    /// By how far the table at the position `x` (m) is from where the controller's measuring has it, m; 0 for a load
+    /// that turns.
     fn growth(&self, x: f64) -> f64;
 }
 
@@ -114,9 +118,8 @@ impl Warmth for ModelHeat {
         Ok(())
     }
 
-    fn friction(&self) -> [f64; 2] {
-        let at_work = self.model.under(&self.duty);
-        at_work.map_or([1.0; 2], |at_work| at_work.friction_factors(&self.now))
+    fn friction(&self) -> Result<[f64; 2], HeatError> {
+        Ok(self.model.under(&self.duty)?.friction_factors(&self.now))
     }
 
     fn growth(&self, x: f64) -> f64 {
@@ -152,16 +155,21 @@ pub struct WarmMoves {
 
 impl WarmMoves {
     /// Warms a machine up, whose parts are cold as its file has them, for passes of so many seconds after each of
-    /// `after` (s, rising).
+    /// `after` (s, rising by a pass or more: the duty goes on meanwhile).
     ///
     /// # Errors
-    /// [`PipelineError`] if its heat does not settle or its friction vanishes.
+    /// [`PipelineError`] if its heat does not settle or its friction vanishes, or a time comes before the pass of the
+    /// time before has ended.
     pub fn new(
         machine: &Axis,
         warmth: &mut dyn Warmth,
         after: &[f64],
         pass: f64,
     ) -> Result<Self, PipelineError> {
+        let early = after.windows(2).find(|w| w[1] - w[0] < pass * (1.0 - 1e-9));
+        if let Some(&[before, time]) = early {
+            return Err(HeatError::PassesOverlap { before, time, pass }.into());
+        }
         let mut warm = Self {
             after: after.to_vec(),
             loops: Vec::new(),
@@ -169,10 +177,10 @@ impl WarmMoves {
         };
         for time in after {
             warmth.until(*time)?;
-            let before = warmth.friction();
+            let before = warmth.friction()?;
             let mut grown = HeatAhead::constant(machine, |x| warmth.growth(x), before);
             warmth.until(time + pass)?;
-            let after = warmth.friction();
+            let after = warmth.friction()?;
             grown.push(pass, |x| warmth.growth(x), after);
             warm.grown.push(grown);
             // Friction changes by some thousandths in a pass.

@@ -270,8 +270,9 @@ class Axis:
         - `homed_s`: when the axis was homed, after the log's begin; growth counts from then.
         - `probe_each_s`: the readings of the log so far apart set the prediction right; the others check it.
 
-        Other options as of `fit_heat`. Keys: the arrays `t_s`, `dry_factor`, `viscous_factor`, `growth_m` (at the reference, if the log has one),
-        a list of arrays `growth_at_m`, and `figures` (errors of the readings).
+        Other options as of `fit_heat`. Keys: the arrays `t_s`, `dry_factor`, `viscous_factor`; `growth_m`, at the reference if the log has one: what a
+        correction subtracts from it, the growth of the screw on an axis that measures at the motor, of the scale on one that measures by it;
+        a list of arrays `growth_at_m`, the growth of the screw at the positions `at_m`; and `figures` (errors of the readings).
 
         Raises LogError, MotionError.
 

@@ -11,7 +11,7 @@ use axis_pipeline::{ErrorUnit, Figures};
 use axis_sim::{Axis, Measured, SixDigits};
 use clap::Args;
 use discover_matrix::hidden::Noise;
-use miette::{IntoDiagnostic, Result};
+use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::Serialize;
 
 use super::heat_time::time;
@@ -24,7 +24,8 @@ use crate::progress::bar;
 #[derive(Args)]
 #[group(id = "warm-options")]
 pub(super) struct Options {
-    /// Make the moves cold, and again after so long of them without end, such as 5min 20min 1h. The machine warms
+    /// Make the moves cold, and again after so long of them without end, such as 5min 20min 1h, in steps no
+    /// shorter than the moves themselves. The machine warms
     /// up by the [thermal] of its file; the strategy predicts growth and friction by that of the axis file
     #[arg(long, value_name = "TIME", num_args = 1.., value_parser = time, requires = "strategy")]
     after: Vec<f64>,
@@ -81,7 +82,8 @@ impl Run<'_> {
         let mut truth = ModelHeat::new(machine, &duty, options.air).into_diagnostic()?;
         let model = ModelHeat::new(&self.context.axis, &duty, options.air).into_diagnostic()?;
         let pass = duty.iter().map(|motion| motion.duration()).sum::<f64>();
-        let warm = WarmMoves::new(machine, &mut truth, &times, pass).into_diagnostic()?;
+        let warm = WarmMoves::new(machine, &mut truth, &times, pass);
+        let warm = warm.into_diagnostic().wrap_err("--after")?;
         let progress = bar("compensate", (3 * times.len() * self.motions.len()) as u64);
         let made = |kind: &StrategyKind, model: Option<ModelHeat>| {
             let mut strategy = kind.strategy(self.predictors).into_diagnostic()?;

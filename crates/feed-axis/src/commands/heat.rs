@@ -11,6 +11,7 @@ use compensator::NoCompensation;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use trajectories::{Motion, Program, Step};
 
+pub use super::heat_time::LONGEST;
 use super::heat_time::time;
 use super::heat_words::{Heated, HeatedNode, HeatedPlace};
 use super::motions::{listed, program_on};
@@ -32,23 +33,17 @@ pub struct Options {
     /// thermal.nut_to_screw_w_per_k=20 (may be repeated)
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<SetKey>,
-    /// Trajectory of the axis file, from 1, there and back without end
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = 1,
-        conflicts_with = "program"
-    )]
-    trajectory: usize,
-    /// Standstill at both ends of the trajectory, s
+    /// Trajectory of the axis file, from 1, there and back without end [default: 1]
+    #[arg(long, value_name = "N", conflicts_with = "program")]
+    trajectory: Option<usize>,
+    /// Standstill at both ends of the trajectory, s [default: 1]
     #[arg(
         long,
         value_name = "S",
-        default_value_t = 1.0,
         conflicts_with = "program",
         allow_negative_numbers = true
     )]
-    dwell: f64,
+    dwell: Option<f64>,
     /// Motion program (TOML) that ends where it begins, without end
     #[arg(long, value_name = "FILE")]
     program: Option<PathBuf>,
@@ -114,7 +109,12 @@ pub fn command(options: &Options) -> Result<()> {
 impl Options {
     /// Fits or predicts logs of hours.
     fn slow_logs(&self, axis: &Axis) -> Result<()> {
-        let duties = self.slow.programs(axis, || self.motion(axis))?;
+        let own = match self.motion(axis) {
+            // An axis file without a trajectory may have logs with a reference.
+            Err(_) if !self.names_a_motion() => None,
+            motion => Some(motion?),
+        };
+        let duties = self.slow.programs(axis, own)?;
         match &self.slow.predict {
             Some(file) => {
                 let given = heat_predict::Given {
@@ -151,22 +151,36 @@ impl Options {
         if let Some(file) = &self.program {
             return repeated(file, axis);
         }
-        let spec = self.trajectory.checked_sub(1);
+        let spec = self.trajectory().checked_sub(1);
         let spec = spec.and_then(|i| axis.trajectories.get(i)).ok_or_else(|| {
             wrong_use(format!(
                 "--trajectory {}: there is no such trajectory; the axis file has {}",
-                self.trajectory,
+                self.trajectory(),
                 listed(axis)
             ))
         })?;
         let (start, limits) = (axis.stroke.start, spec.limits);
         let rest = Step::Dwell {
-            duration: self.dwell,
+            duration: self.dwell(),
         };
         let to = |to: f64| Step::Move { to, limits };
         let steps = vec![to(start + spec.displacement), rest, to(start), rest];
         let program = Program::new(start, steps);
         program.into_diagnostic().wrap_err("--dwell")
+    }
+
+    fn trajectory(&self) -> usize {
+        self.trajectory.unwrap_or(1)
+    }
+
+    /// s.
+    fn dwell(&self) -> f64 {
+        self.dwell.unwrap_or(1.0)
+    }
+
+    /// Whether a motion was asked for, rather than left to the default.
+    fn names_a_motion(&self) -> bool {
+        self.program.is_some() || self.trajectory.is_some() || self.dwell.is_some()
     }
 
     /// What the motion is called.
@@ -175,29 +189,50 @@ impl Options {
             Some(file) => file.display().to_string(),
             None => format!(
                 "trajectory {} there and back, standstills of {} s",
-                self.trajectory,
-                SixDigits(self.dwell)
+                self.trajectory(),
+                SixDigits(self.dwell())
             ),
         }
     }
 
     fn places(&self, axis: &Axis) -> Result<Vec<f64>> {
-        places(axis, &self.at)
+        places(axis, &self.at, GivenAs::AT)
     }
 }
 
-/// Positions at which growth is shown, m: those that were asked for (mm), or five over the stroke.
+/// How positions are given: what they are called, their unit, and what it is in metres.
+#[derive(Clone, Copy)]
+pub struct GivenAs {
+    /// What the user calls them.
+    pub name: &'static str,
+    /// Their unit.
+    pub unit: &'static str,
+    /// That unit, m.
+    pub metres: f64,
+}
+
+impl GivenAs {
+    /// Of the command.
+    pub const AT: Self = Self {
+        name: "--at",
+        unit: "mm",
+        metres: 1e-3,
+    };
+}
+
+/// Positions at which growth is shown, m: those that were asked for, or five over the stroke.
 ///
 /// # Errors
 /// Wrong use, if one is outside the stroke or the load turns.
-pub fn places(axis: &Axis, at: &[f64]) -> Result<Vec<f64>> {
+pub fn places(axis: &Axis, at: &[f64], given: GivenAs) -> Result<Vec<f64>> {
     let stroke = &axis.stroke;
+    let GivenAs { name, unit, metres } = given;
     if axis.freedom() == Freedom::Rotary {
         return match at.is_empty() {
             true => Ok(Vec::new()),
-            false => Err(wrong_use(
-                "--at: the load of this axis turns, and growth is along lines alone".to_owned(),
-            )),
+            false => Err(wrong_use(format!(
+                "{name}: the load of this axis turns, and growth is along lines alone"
+            ))),
         };
     }
     if at.is_empty() {
@@ -207,14 +242,14 @@ pub fn places(axis: &Axis, at: &[f64]) -> Result<Vec<f64>> {
     }
     let slack = 1e-9;
     let inside = stroke.minimum - slack..=stroke.maximum + slack;
-    let place = |mm: &f64| {
-        let at = 1e-3 * mm;
+    let place = |given: &f64| {
+        let at = metres * given;
         match inside.contains(&at) {
             true => Ok(at),
             false => Err(wrong_use(format!(
-                "--at {mm}: the table is between {} and {} mm",
-                SixDigits(1e3 * stroke.minimum),
-                SixDigits(1e3 * stroke.maximum)
+                "{name} {given}: the table is between {} and {} {unit}",
+                SixDigits(stroke.minimum / metres),
+                SixDigits(stroke.maximum / metres)
             ))),
         }
     };

@@ -65,9 +65,33 @@ fn write(given: &Given<'_>, fitted: &Fitted, out: &Path) -> Result<()> {
         .map(|number| key(number).parse())
         .collect();
     let text = with_keys(&text, &keys.map_err(miette::Report::msg)?)?;
-    let text = format!("{}{text}", fitted.comment());
+    let text = format!("{}{}", fitted.comment(), without_comment(&text));
     Axis::parse(&out.display().to_string(), &text)?;
     write_whole(out, text.as_bytes())
+}
+
+/// How the lines at the head of a fitted file begin and end.
+const FITTED: &str = "# [thermal] fitted by `";
+const SEVERAL: &str =
+    "# Such logs do not determine each number: several sets of them give the same growth.\n\n";
+
+/// The text without the lines of a fit before, wherever among the comments at its head they are.
+fn without_comment(text: &str) -> String {
+    let is_comment = |line: &&str| line.starts_with('#') || line.trim().is_empty();
+    let head: usize = text
+        .split_inclusive('\n')
+        .take_while(is_comment)
+        .map(str::len)
+        .sum();
+    let (head, rest) = text.split_at(head);
+    let old = head.find(FITTED).and_then(|begin| {
+        let end = begin + head[begin..].find(SEVERAL)? + SEVERAL.len();
+        Some(begin..end)
+    });
+    match old {
+        Some(old) => format!("{}{}{rest}", &head[..old.start], &head[old.end..]),
+        None => text.to_owned(),
+    }
 }
 
 /// A number of [thermal].
@@ -151,11 +175,11 @@ impl Fitted {
 
     /// Lines at the head of the axis file.
     fn comment(&self) -> String {
-        let mut text = format!("# [thermal] fitted by `{} heat --fit`.\n", program::name());
+        let mut text = format!("{FITTED}{} heat --fit`.\n", program::name());
         for line in self.summary() {
             let _ = writeln!(text, "# {line}");
         }
-        text.push_str("# Such logs do not determine each number: several sets of them give the same growth.\n\n");
+        text.push_str(SEVERAL);
         text
     }
 

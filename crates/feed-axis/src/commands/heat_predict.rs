@@ -13,9 +13,6 @@ use serde::Serialize;
 use super::heat_slow::{Options, of_log, slow_log};
 use crate::output::print;
 
-/// Window of the predictor, s.
-const WINDOW: f64 = 60.0;
-
 /// What the command is about.
 pub(super) struct Given<'a> {
     pub axis: &'a Axis,
@@ -35,10 +32,10 @@ pub(super) fn command(given: &Given<'_>, options: &Options, file: &Path) -> Resu
     )?;
     let model = given.axis.thermal_model().into_diagnostic()?;
     let how = FollowOptions {
-        window: WINDOW,
         homed: options.homed.unwrap_or(0.0),
         probe_each: options.probe_each,
         places: given.places.clone(),
+        ..FollowOptions::default()
     };
     let found = of_log(file, follow(model, &slow, &how).into_diagnostic())?;
     if let Some(out) = &options.out {
@@ -51,7 +48,8 @@ pub(super) fn command(given: &Given<'_>, options: &Options, file: &Path) -> Resu
     print("heat", &predicted)
 }
 
-/// The log that is written: growth at each position, and the reference less growth.
+/// The log that is written: growth of the screw at each position; and growth that the controller does not see at the
+/// reference, and the reference less that.
 fn channels(log: &Log, slow: &SlowLog<'_>, found: &Following, places: &[f64]) -> Result<Log> {
     let channel = |name: &str, values: Vec<f64>| Channel::new(name, values).into_diagnostic();
     let mut all = vec![channel("t_s", log.time().to_vec())?];
@@ -94,7 +92,7 @@ pub struct Predicted {
     /// Times that the prediction was set right.
     probings: usize,
     positions_mm: Vec<f64>,
-    /// At the end of the log.
+    /// Of the screw, at the end of the log.
     growth_at_end_um: Vec<f64>,
     /// Dry and viscous friction then, as multiples of the cold axis'.
     friction_at_end: [f64; 2],
@@ -133,7 +131,7 @@ impl fmt::Display for Predicted {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{}: growth along {}, {:.2} h, from its reference alone, since {} s",
+            "{}: growth of the screw along {}, {:.2} h, from its reference alone, since {} s",
             self.axis,
             self.log,
             self.hours,

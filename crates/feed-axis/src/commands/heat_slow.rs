@@ -16,6 +16,9 @@ use super::heat_time::time;
 use crate::exit::wrong_use;
 use crate::out_file;
 
+/// Group of the options that name logs: --fit and --predict.
+const LOGS: &str = "slow-logs";
+
 /// Options for slow logs.
 // A group by itself: clap names groups after their type, and the command's own options have that name.
 #[derive(Args)]
@@ -23,17 +26,17 @@ use crate::out_file;
 pub(super) struct Options {
     /// Fit the thermal model to logs of hours, each begun cold, and write an axis file with what was
     /// fitted in its [thermal]
-    #[arg(long, value_name = "LOG", num_args = 1.., requires = "out", conflicts_with_all = ["predict", "report"])]
+    #[arg(long, value_name = "LOG", num_args = 1.., group = LOGS, requires = "out", conflicts_with_all = ["predict", "report"])]
     pub(super) fit: Vec<PathBuf>,
     /// Predict growth along a log of hours from its reference, beside what was read in it
-    #[arg(long, value_name = "LOG", conflicts_with = "report")]
+    #[arg(long, value_name = "LOG", group = LOGS, conflicts_with = "report")]
     pub(super) predict: Option<PathBuf>,
     /// Motion programs that the logs' channel duty_1 counts from 1, each repeated [default: the duty of
     /// --trajectory or --program alone]
-    #[arg(long, value_name = "FILE", num_args = 1..)]
+    #[arg(long, value_name = "FILE", num_args = 1.., requires = LOGS)]
     pub(super) duties: Vec<PathBuf>,
     /// Where to write: with --fit the axis file, with --predict the log with growth (.csv, .parquet or .mat)
-    #[arg(long, value_name = "FILE", value_parser = out_file::file())]
+    #[arg(long, value_name = "FILE", value_parser = out_file::file(), requires = LOGS)]
     pub(super) out: Option<PathBuf>,
     /// Last part of each log that is not fitted but predicted, %
     #[arg(
@@ -45,10 +48,10 @@ pub(super) struct Options {
     )]
     pub(super) held_out: f64,
     /// What a probe reads the screw's growth against
-    #[arg(long, value_enum, default_value_t = ProbeAgainst::Bearing)]
+    #[arg(long, value_enum, default_value_t = ProbeAgainst::Bearing, requires = LOGS)]
     probe_against: ProbeAgainst,
     /// What readings of a probe count from
-    #[arg(long, value_enum, default_value_t = ProbeZero::Begin)]
+    #[arg(long, value_enum, default_value_t = ProbeZero::Begin, requires = LOGS)]
     probe_zero: ProbeZero,
     /// Set the prediction right by the readings of the log so far apart; the others check it
     #[arg(long, value_name = "TIME", value_parser = time, requires = "predict")]
@@ -76,26 +79,18 @@ enum ProbeZero {
     First,
 }
 
-/// Length of the stretches that a reference is fitted in, s.
-pub(super) const FIT_WINDOW: f64 = 300.0;
-
 impl Options {
     /// Whether a log was given.
     pub(super) fn is_asked(&self) -> bool {
         !self.fit.is_empty() || self.predict.is_some()
     }
 
-    /// The duties of the logs: those named, or `own`.
-    pub(super) fn programs(
-        &self,
-        axis: &Axis,
-        own: impl FnOnce() -> Result<Program>,
-    ) -> Result<Vec<SharedMotion>> {
+    /// The duties of the logs: those named, or `own` if there is one.
+    pub(super) fn programs(&self, axis: &Axis, own: Option<Program>) -> Result<Vec<SharedMotion>> {
         let shared = |program| Arc::new(program) as SharedMotion;
         let read = |file: &PathBuf| super::heat::repeated(file, axis).map(shared);
         match self.duties.is_empty() {
-            // An axis file without a trajectory may have logs with a reference.
-            true => Ok(own().into_iter().map(shared).collect()),
+            true => Ok(own.into_iter().map(shared).collect()),
             false => self.duties.iter().map(read).collect(),
         }
     }
@@ -105,7 +100,6 @@ impl Options {
         SlowLogOptions {
             duties,
             air,
-            window: FIT_WINDOW,
             probe: match self.probe_against {
                 ProbeAgainst::Bearing => GrowthOf::Screw,
                 ProbeAgainst::Bed => GrowthOf::ScrewLessBed,
@@ -114,6 +108,7 @@ impl Options {
                 ProbeZero::Begin => GrowthZero::Begin,
                 ProbeZero::First => GrowthZero::FirstAtPlace,
             },
+            ..SlowLogOptions::default()
         }
     }
 

@@ -1,7 +1,7 @@
 //! Durations with their units, as `heat` takes them.
 
 /// Longest duration, s: four months.
-const LONGEST: f64 = 1e7;
+pub const LONGEST: f64 = 1e7;
 
 /// Reads a duration: a number and its unit.
 pub(super) fn time(text: &str) -> std::result::Result<f64, String> {
