@@ -50,8 +50,8 @@ impl Hidden {
     /// Known parameters off by up to `share` of their values, evenly spread.
     pub fn with_known_off_by(mut self, machine: &Axis, share: f64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed ^ 0x6b6e_6f77);
-        let off = |_| share * (2.0 * random.random::<f64>() - 1.0);
-        self.shares = machine.known().into_iter().map(off).collect();
+        let off = |most| most * (2.0 * random.random::<f64>() - 1.0);
+        self.shares = most_off(machine, share).into_iter().map(off).collect();
         self
     }
 
@@ -67,6 +67,15 @@ impl Hidden {
             .decimate(every)
             .map_err(ReplayError::from)
     }
+}
+
+/// By how much each known parameter may be off: that share of its value; an angle by its own tolerance, as a share says
+/// nothing of it.
+pub(crate) fn most_off(machine: &Axis, share: f64) -> Vec<f64> {
+    let all = machine.known_tolerances().into_iter();
+    let all = all.zip(machine.known_angles());
+    all.map(|(own, is_angle)| if is_angle { own } else { share })
+        .collect()
 }
 
 /// The machine of the truth: known parameters off, effects put in, and a finer mesh.

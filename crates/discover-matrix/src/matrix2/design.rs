@@ -13,7 +13,9 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::case::{Case, CaseSetting, Channels, TOLERANCES, VERSION, VISIBLE};
-use crate::hidden::{Entry, Exercise, Form, LAW_NAME, Law, NoiseColour, Ranges, Rough, exercise};
+use crate::hidden::{
+    Entry, Exercise, Form, LAW_NAME, Law, NoiseColour, Ranges, Rough, exercise, most_off,
+};
 use crate::matrix::{CaseKind, HiddenEffect, values};
 
 /// How many plots, and how many cases of each kind in one.
@@ -333,6 +335,6 @@ impl Case {
 pub(super) fn shares(axis: &Axis, case: &Case) -> Vec<f64> {
     let mut random = ChaCha8Rng::seed_from_u64(case.seed ^ 0x6b6e_6f77);
     let share = case.setting.tolerance;
-    let off = |_| share * (2.0 * random.random::<f64>() - 1.0);
-    axis.known().into_iter().map(off).collect()
+    let off = |most| most * (2.0 * random.random::<f64>() - 1.0);
+    most_off(axis, share).into_iter().map(off).collect()
 }
