@@ -35,7 +35,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     #[command(flatten)]
-    User(feed_axis::commands::Command<Job>),
+    User(Box<feed_axis::commands::Command<Job>>),
     /// The same as `export drive`
     ExportDrive(drive::Options),
     /// Search logs of a simulator that shares no code with this one, and score the answers

@@ -50,7 +50,7 @@ fn growth_and_friction_are_planned_together() {
     let run = |name: &str, heat: bool| {
         let kind = named(STRATEGIES, name).unwrap();
         let mut strategy = kind.strategy(&Predictors::of(&axis)).unwrap();
-        let model = ModelHeat::new(&axis, &[stroke.clone()], 20.0).unwrap();
+        let model = ModelHeat::new(&axis, std::slice::from_ref(&stroke), 20.0).unwrap();
         let model = heat.then_some(model);
         let passes = warm.run(&mut *strategy, &moves, model, |_: &mut Measured| (), || ());
         let passes = passes.unwrap();
@@ -75,7 +75,7 @@ fn passes_that_would_overlap_are_refused() {
     let axis = axis();
     let stroke: SharedMotion = Arc::new(program(0.45, 0.95, 0.2));
     let refused = |after: &[f64]| {
-        let mut heat = ModelHeat::new(&axis, &[stroke.clone()], 20.0).unwrap();
+        let mut heat = ModelHeat::new(&axis, std::slice::from_ref(&stroke), 20.0).unwrap();
         WarmMoves::new(&axis, &mut heat, after, 8.0).err()
     };
     let error = refused(&[0.0, 5.0]).unwrap();

@@ -203,7 +203,7 @@ fn checked(
             most = most.max(1e6 * growth);
         }
         let now = 5 * (number as u32 + 1);
-        if probed.is_some_and(|each| now % each == 0) {
+        if probed.is_some_and(|each| now.is_multiple_of(each)) {
             let read = [1, 3].map(|i| [PLACES[i], truth[i] + 0.5e-6 * random.normal()]);
             let set = predictor.probed(GrowthOf::Screw, &read);
             set.into_diagnostic()?;
