@@ -47,10 +47,10 @@ def change(file, lines):
     """Puts each of these lines of TOML in the place of the one of its key."""
     whole = file.read_text()
     for line in lines.splitlines():
-        key = re.search(r"# in place of (\w+)|^(\w+)", line)
-        whole, count = re.subn(rf"(?m)^{key[1] or key[2]} = .*", line, whole)
+        key = (re.search(r"# in place of (\w+)", line) or re.match(r"(\w+)", line))[1]
+        whole, count = re.subn(rf"(?m)^{key} = .*", line, whole)
         if count != 1:
-            sys.exit(f"{file}: {key[0]} stands there {count} times")
+            sys.exit(f"{file}: {key} stands there {count} times")
     file.write_text(whole)
 
 
