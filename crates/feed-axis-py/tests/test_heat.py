@@ -40,7 +40,8 @@ def test_a_fitted_model_predicts_hours_that_were_not_fitted(root: Path) -> None:
     assert after["figures"]["greatest_um"] < 0.3 * before["figures"]["greatest_um"]
     assert np.shape(after["growth_at_m"]) == (1, len(after["t_s"]))
     right = axis.predict_growth(check, duties=duties, probe_each_s=3600.0)
-    assert right["figures"]["probings"] == 3
+    # The readings next after one and two hours, at 3890 and 7490 s; the log ends before another hour has gone.
+    assert right["figures"]["probings"] == 2
     for each in (0.0, -1.0, float("nan")):
         with pytest.raises(fa.LogError, match="probe_each is .*valid: above 0"):
             axis.predict_growth(check, duties=duties, probe_each_s=each)
@@ -56,6 +57,7 @@ def test_growth_is_taken_off_a_reference(root: Path) -> None:
     position = 0.7 - 0.25 * np.cos(2 * np.pi * t / 8)
     along = axis.predict_growth({"t_s": t, "position_ref_m": position})
     assert along["growth_m"].shape == t.shape
-    assert along["growth_m"][0] == 0 and 20e-6 < along["growth_m"][-1] < 200e-6
-    # A window late, without jumps.
-    assert np.abs(np.diff(along["growth_m"])).max() < 2e-6
+    assert along["growth_m"][0] == 0 and 20e-6 < along["growth_m"].max() < 200e-6
+    # Without jumps: it changes with the position, by less than a screw that is 20 K warmer does, and hardly with time.
+    steps = np.abs(np.diff(along["growth_m"]))
+    assert (steps < 20 * 11.5e-6 * np.abs(np.diff(position)) + 0.1e-6).all()
