@@ -54,7 +54,7 @@ fn found(joint: &Joint, tolerances: &str) -> Discovery {
 }
 
 /// Friction that comes on as an arc tangent is another form than the file's, and all that is said. With both taken for
-/// exact, the encoder's zero is named as a force over the position.
+/// exact, a second kinematic error and a Stribeck friction are named in their place.
 #[test]
 fn how_a_joint_was_put_together_is_no_effect() {
     let clean = found(&PUT_TOGETHER, "");

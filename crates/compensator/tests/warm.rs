@@ -2,7 +2,7 @@
 
 use compensator::{
     Along, Cascade, Drive, DriveModel, DriveSection, Kinematics, Passage, PlanSettings, Planned,
-    Planner, Reference, Standstill, Target,
+    Planner, Reference, ResidualModel, Standstill, Target,
 };
 use lugre::{LuGre, Parameters};
 
@@ -107,4 +107,11 @@ fn friction_follows_the_factors_along_the_motion() {
     );
     let error = model().warmed([1.0, -0.1]).unwrap_err().to_string();
     assert!(error.contains("viscous factor"), "{error}");
+}
+
+/// In KB, as the documentation of both and docs/theory/compensator.md say.
+#[test]
+fn a_planner_is_as_large_as_its_page_says() {
+    let [whole, tables] = [size_of::<Planner>(), size_of::<ResidualModel>()];
+    assert_eq!([whole / 1000, tables / 1000], [42, 3]);
 }

@@ -98,7 +98,7 @@ fn a_pid_controller_is_tuned() {
             "derivative_n_s_per_m"
         ]
     );
-    // Slow forces are held by the integral, of which nothing else is read here: y/F = 2πf/K_I.
+    // At low frequencies the integral action alone resists a force: y/F = 2πf/K_I.
     let curves = &after.curves[0];
     let at = curves.frequency_hz.iter().position(|f| *f > 0.2).unwrap();
     let [re, im] = curves.compliance[at];

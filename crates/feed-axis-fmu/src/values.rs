@@ -17,6 +17,17 @@ struct Asked {
     is_there: bool,
 }
 
+impl Asked {
+    fn of((references, variables): (*const u32, usize), values: usize, is_there: bool) -> Self {
+        Self {
+            references,
+            variables,
+            values,
+            is_there,
+        }
+    }
+}
+
 /// Does `work` for each variable with its place, up to the first that is refused.
 fn each(
     component: ComponentAt<'_>,
@@ -52,15 +63,10 @@ fn each(
 pub fn get(
     component: ComponentAt<'_>,
     name: &str,
-    (references, variables): (*const u32, usize),
+    asked: (*const u32, usize),
     (array, values): (*mut f64, usize),
 ) -> i32 {
-    let asked = Asked {
-        references,
-        variables,
-        values,
-        is_there: !array.is_null(),
-    };
+    let asked = Asked::of(asked, values, !array.is_null());
     each(component, name, asked, |instance, access, reference, i| {
         access.put(array, i, instance.unit.get(reference)?);
         Ok(())
@@ -71,15 +77,10 @@ pub fn get(
 pub fn set(
     component: ComponentAt<'_>,
     name: &str,
-    (references, variables): (*const u32, usize),
+    asked: (*const u32, usize),
     (array, values): (*const f64, usize),
 ) -> i32 {
-    let asked = Asked {
-        references,
-        variables,
-        values,
-        is_there: !array.is_null(),
-    };
+    let asked = Asked::of(asked, values, !array.is_null());
     each(component, name, asked, |instance, access, reference, i| {
         instance.unit.set(reference, access.number(array, i))
     })

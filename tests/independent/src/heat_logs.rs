@@ -68,7 +68,7 @@ fn log(hours: &HeatHours, numbers: &[usize], mut random: Random) -> String {
     };
     row(&machine, 0, PLACES[0], 0.0, 0.0);
     for ((motion, count), duty) in hours.duties.iter().zip(numbers) {
-        // Stretches of ten minutes; what is left of an odd number is one of five.
+        // Stretches of ten minutes, and one of five minutes at the end if the number of periods is odd.
         let mut left = 300.0 * f64::from(*count);
         while left > 0.0 {
             let whole = left.min(600.0);

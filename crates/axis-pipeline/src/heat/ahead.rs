@@ -45,7 +45,7 @@ impl HeatAhead {
     }
 
     /// Along a motion that begins in the state `begun`, the axis having been homed in `homed`, in air of a
-    /// constant temperature, °C. `seen` makes of growth what the controller does not see.
+    /// constant temperature, °C.
     pub(super) fn along(
         (axis, losses): (&Axis, &LossModel),
         model: &ThermalModel,

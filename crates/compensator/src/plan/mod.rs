@@ -27,10 +27,12 @@
 mod actuator;
 mod known;
 mod smoothing;
+mod target;
 
 use lugre::{Exponential, LuGre};
 
 pub use known::Plan;
+pub use target::{Homed, PlanSettings, Planned, Standstill, Target};
 
 use crate::error::{require, within};
 use crate::model::{DriveModel, MOST_DELAY};
@@ -40,110 +42,11 @@ use crate::{CompensatorError, Correction, Reference};
 use actuator::Inverse;
 use smoothing::{MOST_HALF, Smoothing};
 
-/// How a plan is made.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlanSettings<T = f64> {
-    /// Deviation of the Gaussian over the wind-up, s. 2 ms by default; it costs four
-    /// times itself of look-ahead. 0: none, with two set points ahead.
-    pub smoothing: T,
-}
-
-impl<T: Exponential> Default for PlanSettings<T> {
-    fn default() -> Self {
-        Self {
-            smoothing: T::of(2e-3),
-        }
-    }
-}
-
-/// What comes to the planner: a set point, and what was learned for it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Target<T = f64> {
-    /// The set point.
-    pub reference: Reference<T>,
-    /// Where the load is to be led besides, relative to it: a learned correction.
-    pub shift: Reference<T>,
-    /// Force against the load that the model does not have, N.
-    pub force: T,
-    /// Dry and viscous friction at the temperature of then, as multiples of the model's; as at the set point
-    /// before if that is not stated, and the model's at first.
-    pub friction: Option<[T; 2]>,
-}
-
-impl<T: Exponential> Target<T> {
-    /// A set point without anything learned.
-    pub fn of(reference: Reference<T>) -> Self {
-        Self {
-            reference,
-            ..Self::default()
-        }
-    }
-}
-
-/// Where and under what a position loop that is closed at the motor was homed: there the
-/// position that it shows is the load's.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Homed<T = f64> {
-    /// Position of the load, m or rad.
-    pub position: T,
-    /// Command that the drive held it with, in the actuator's unit.
-    pub effort: T,
-}
-
-/// How an axis stands before a motion.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Standstill<T = f64> {
-    /// Command that the drive holds the axis with, in the actuator's unit: what it has
-    /// commanded last, or the mean over a standstill where that is noisy. With the load
-    /// known it tells how the friction's bristles were left.
-    pub effort: T,
-    /// Part of it that is a compensator's own; the drive's integrator holds the rest.
-    pub own: T,
-    /// Angle of the motor, rad: where what repeats with its turn is.
-    pub motor_angle: T,
-    /// Where a position loop that is closed at the motor was homed, where that was not here:
-    /// the wind-up that the axis stands with now, after a motion, is not the one of then.
-    pub homed: Option<Homed<T>>,
-    /// Force that the friction's bristles hold the load with, N, where that is known: as the
-    /// plan of the motion before has left them. Where a motion has just ended, `effort` is not
-    /// yet that of an axis at rest, and tells less of it.
-    pub held: Option<T>,
-}
-
-/// What the plan says of a cycle.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Planned<T = f64> {
-    /// The set point.
-    pub reference: Reference<T>,
-    /// Where the load is to be, m or rad: the set point, and what was learned.
-    pub position: T,
-    /// Speed of the motor ω_d, rad/s.
-    pub motor_speed: T,
-    /// Wind-up s of the motor against the load, rad.
-    pub wind_up: T,
-    /// That with which a position loop that is closed at the motor was homed, rad.
-    pub home: T,
-    /// Torque of the motor at the start of the cycle, N·m.
-    pub torque: T,
-    /// Friction force on the load, N.
-    pub friction: T,
-    /// Share χ of bristles that follow the motion: 1 in pre-sliding, 0 in sliding.
-    pub sticking: T,
-    /// q current at the start of the cycle, A; of another actuator, the command that
-    /// would hold its torque.
-    pub current: T,
-    /// The command of the cycle, in the actuator's unit.
-    pub effort: T,
-    /// Whether a limit of the actuator keeps the plan from being followed.
-    pub limited: bool,
-    /// The offsets.
-    pub correction: Correction<T>,
-}
-
 /// One set point with the forces along it.
 #[derive(Clone, Copy, Debug, Default)]
 struct Ahead<T> {
-    target: Target<T>,
+    reference: Reference<T>,
+    shift: Reference<T>,
     friction: T,
     sticking: T,
     /// J a/r + r (m a + F), N·m.
@@ -180,7 +83,7 @@ const AHEAD: usize = MOST_HALF + 2;
 /// Those between that and the cycle that is planned.
 const WOUND: usize = MOST_DELAY + 2;
 
-/// Makes the plan of a stream of set points, one a control cycle. No allocation; 26 KB in
+/// Makes the plan of a stream of set points, one a control cycle. No allocation; 42 KB in
 /// `f64`.
 #[derive(Clone, Debug)]
 pub struct Planner<T = f64, R = ResidualModel<T>> {
@@ -349,10 +252,11 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
         let m = &self.model;
         let section = m.along.at(position);
         let ahead = Ahead {
-            target: Target::of(Reference {
+            reference: Reference {
                 position,
                 ..Reference::default()
-            }),
+            },
+            shift: Reference::default(),
             friction,
             sticking: T::ONE,
             rigid,
@@ -418,9 +322,7 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
         let lead_rate = (after.lead - before.lead) / (T::TWO * period);
         let lead_second = (after.lead - T::TWO * middle.lead + before.lead) / (period * period);
         let [wind_up, rate, second] = self.smoothing.push(wind_up);
-        let reference = &middle.target.reference;
-        let shift = &middle.target.shift;
-        let velocity = reference.velocity + shift.velocity;
+        let velocity = middle.reference.velocity + middle.shift.velocity;
         let newest = Wound {
             wind_up: wind_up + middle.lead,
             motor_speed: velocity / self.model.travel + rate + lead_rate,
@@ -484,7 +386,8 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
         let transmitted = rigid + section.lagging * at_motor;
         let wind_up = section.compliance * transmitted + self.side(transmitted);
         let ahead = Ahead {
-            target,
+            reference: *r,
+            shift: target.shift,
             friction,
             sticking: self.sticking(),
             rigid: section.rotating * at_motor + rigid + at_angle,
@@ -531,9 +434,9 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
     /// and a delay later, which lies between the two of `late`.
     fn cycle(&mut self, start: &Wound<T>, late: [&Wound<T>; 2]) -> Planned<T> {
         let model = self.model;
-        let Target {
+        let Ahead {
             reference, shift, ..
-        } = start.ahead.target;
+        } = start.ahead;
         let share = if self.late_part > T::ZERO {
             self.late_part
         } else {

@@ -64,7 +64,7 @@ pub trait Residual<T: Scalar = f64> {
     fn besides(&mut self, at: &ResidualAt<T>) -> [T; 2];
 }
 
-/// Torque over angle and force over position. 9 KB in `f64`.
+/// Torque over angle and force over position. 3 KB in `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ResidualModel<T = f64> {
     /// [aₙ, bₙ], N·m at the motor, n from 1.

@@ -127,7 +127,7 @@ impl Confidence {
 }
 
 impl Recalibrated {
-    /// Whether it was moved as far as its tolerance lets it; an angle of which nothing is known has no edge.
+    /// Whether the fit moved it to the limit of its tolerance. An angle that may have any value has no limit.
     pub fn is_at_edge(&self) -> bool {
         let is_any = self.is_angle && self.tolerance >= EDGE * PI;
         self.tolerance > 0.0 && !is_any && self.share.abs() >= EDGE * self.tolerance

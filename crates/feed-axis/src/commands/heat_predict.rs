@@ -1,4 +1,4 @@
-//! `heat --predict`: growth along a log of hours, from its reference.
+//! `heat --predict`: growth along a log of hours, from its reference or its duties.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -81,6 +81,9 @@ fn channels(log: &Log, slow: &SlowLog<'_>, found: &Following, places: &[f64]) ->
 pub struct Predicted {
     axis: String,
     log: String,
+    /// What growth was predicted from.
+    #[serde(skip)]
+    from: &'static str,
     hours: f64,
     homed_s: f64,
     /// Readings that the prediction was compared with.
@@ -110,6 +113,10 @@ impl Predicted {
         Self {
             axis: axis.name.clone(),
             log,
+            from: match last.and_then(|row| row.at_reference) {
+                Some(_) => "reference",
+                None => "duties",
+            },
             hours: last.map_or(0.0, |row| row.time / 3600.0),
             homed_s: how.homed,
             readings: errors.len(),
@@ -131,10 +138,11 @@ impl fmt::Display for Predicted {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{}: growth of the screw along {}, {:.2} h, from its reference alone, since {} s",
+            "{}: growth of the screw along {}, {:.2} h, from its {} alone, since {} s",
             self.axis,
             self.log,
             self.hours,
+            self.from,
             SixDigits(self.homed_s)
         )?;
         if let (Some(greatest), Some(rms), Some(of)) =

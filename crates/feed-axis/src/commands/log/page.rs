@@ -103,7 +103,7 @@ fn table(seen: &SeenLog) -> Table {
         "filtered from",
         "delay",
     ];
-    // Of a channel without noise what is left is rounding: it says nothing, and in a unit of its own.
+    // The residual of a channel without noise is rounding: it says nothing, and would be shown in a unit of its own (pm).
     let noise = |c: &ChannelQuality| {
         let greatest = c.range[0].abs().max(c.range[1].abs());
         let level = c.noise.map(|n| n.level);
