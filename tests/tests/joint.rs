@@ -15,6 +15,7 @@ const PUT_TOGETHER: Joint = Joint {
     error_phase: 2.1,
     gravity: 66.0,
     spring: 0.0,
+    load: 0.0,
 };
 
 const MOVES: [&[[f64; 3]]; 3] = [
@@ -84,4 +85,20 @@ fn a_spring_beside_gravity_is_named_with_its_size() {
         found.sentence
     );
     assert!(found.gap.check.reduction > 0.98);
+}
+
+/// The friction comes on as an arc tangent, of which a Stribeck friction of 0.2 N·m that rises from rest imitates the tail.
+#[test]
+fn a_load_is_named_alone_beside_an_onset_of_another_form() {
+    let joint = Joint {
+        load: -3.0,
+        ..PUT_TOGETHER
+    };
+    let found = found(&joint, "");
+    let [effect] = &found.effects[..] else {
+        panic!("{}", found.sentence);
+    };
+    assert_eq!(effect.name, "constant-load", "{}", found.sentence);
+    let [low, high] = effect.parameters[0].ci95;
+    assert!(low < joint.load && joint.load < high, "{low} to {high}");
 }

@@ -39,6 +39,8 @@ pub struct Joint {
     pub gravity: f64,
     /// A force on the arm against positive motion that stiffens as a spring about level does, N·m/rad.
     pub spring: f64,
+    /// A force on the arm against positive motion that is always there, N·m.
+    pub load: f64,
 }
 
 /// A log of time, motor angle and commanded torque on motion by `moves`, each a distance (rad), a speed (rad/s) and an
@@ -47,7 +49,7 @@ pub fn joint_log(joint: &Joint, moves: &[[f64; 3]], random: &mut Random) -> Tabl
     let start = -0.52;
     let motion = reference(start, moves);
     let gravity = |x: f64| joint.gravity * (x - joint.level_at).cos();
-    let held = gravity(start) + joint.spring * start;
+    let held = gravity(start) + joint.spring * start + joint.load;
     let (mut x, mut v, mut m, mut w) = (start, 0.0, start + held / 2.5e4, 0.0);
     let (mut integral, mut command, mut torque, mut last) = (held, held, held, m);
     let mut rows = Vec::new();
@@ -68,7 +70,8 @@ pub fn joint_log(joint: &Joint, moves: &[[f64; 3]], random: &mut Random) -> Tabl
         let error = ERROR * (2.0 * RATIO * m + joint.error_phase).sin();
         let spring = 2.5e4 * (m - x + error) + 5.0 * (w - v);
         let dry = 6.0 + (-(v / 0.035) * (v / 0.035)).exp();
-        let load = dry * FRAC_2_PI * (v / 3e-3).atan() + 8.0 * v + gravity(x) + joint.spring * x;
+        let friction = dry * FRAC_2_PI * (v / 3e-3).atan() + 8.0 * v;
+        let load = friction + gravity(x) + joint.spring * x + joint.load;
         w += STEP * (torque - spring);
         m += STEP * w;
         v += STEP * (spring - load) / 2.0;

@@ -64,7 +64,7 @@ impl Fitter<'_> {
     }
 
     /// What the known parameters' departures count in D.
-    pub(super) fn departure(&self, state: &State) -> f64 {
+    pub(crate) fn departure(&self, state: &State) -> f64 {
         let pairs = state.shares.iter().zip(known_deviations(self.machine));
         pairs.map(|(s, deviation)| (s / deviation).powi(2)).sum()
     }

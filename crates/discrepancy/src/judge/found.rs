@@ -1,7 +1,7 @@
 //! What was named, with intervals and words.
 
 use axis_sim::Axis;
-use axis_sim::effects::{ActiveEffect, EffectParameter, Scales};
+use axis_sim::effects::{ActiveEffect, EffectParameter, FrictionForm, Scales};
 
 use super::form::FormFound;
 use super::types::{AtScrew, EffectFound, ParameterFound, RefusedEffects, ReplacedEffect};
@@ -108,6 +108,9 @@ pub(super) fn refused_effects(refused: &Refused) -> RefusedEffects {
     }
 }
 
+/// What stands in the place of a friction that was a form of the axis' own.
+const OTHER_FORM: &str = "another form of the friction";
+
 pub(super) fn replaced(replaced: &Replaced, scales: &Scales) -> ReplacedEffect {
     let ActiveEffect { effect, values } = &replaced.when_named;
     let one = |(p, &value): (&EffectParameter, &f64)| {
@@ -116,7 +119,10 @@ pub(super) fn replaced(replaced: &Replaced, scales: &Scales) -> ReplacedEffect {
     ReplacedEffect {
         name: effect.name.to_owned(),
         when_named: effect.parameters.iter().zip(values).map(one).collect(),
-        by: replaced.by.to_owned(),
+        by: match FrictionForm::is_one(replaced.by) {
+            true => OTHER_FORM.to_owned(),
+            false => replaced.by.to_owned(),
+        },
     }
 }
 

@@ -58,7 +58,7 @@ use crate::answers::{LogSet, State};
 use crate::estimate::fit::Fitter;
 use crate::estimate::known::{shown, tolerances};
 use crate::name::gap::{furthest_above, gap, is_more_than_noise, sizes};
-use crate::name::search::{Found, MATERIAL, is_form};
+use crate::name::search::{Found, MATERIAL, Refused, is_form};
 use crate::noise::{
     Excess, Hum, MotionAndRest, excess, floors, log_noise, slow_noise, stays, steady_bands,
 };
@@ -242,7 +242,9 @@ pub fn judged(
         !(is_noise || nearly_all) || unknown.is_some() || more_than_noise.is_some();
     // What takes away little of a residual that is noise was fitted to noise.
     let refused = found.refused.as_ref();
-    let refused = refused.filter(|_| !(as_coloured && effects.is_empty()));
+    let is_of_noise =
+        |refused: &&Refused| as_coloured || slow_of_loop && refused.effects.is_empty();
+    let refused = refused.filter(|refused| !(effects.is_empty() && is_of_noise(refused)));
     let verdict = match (effects.is_empty(), rest_significant) {
         (true, _) if refused.is_some() => Verdict::Unknown,
         (true, false) if own_form.is_some() && check.stands_out() => Verdict::OtherForm,

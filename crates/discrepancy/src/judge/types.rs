@@ -102,7 +102,7 @@ pub struct ReplacedEffect {
     pub name: String,
     /// Its numbers when it had just been named: name, value, unit.
     pub when_named: Vec<(String, f64, String)>,
-    /// The effect that explains as much in its place, now that the others are there.
+    /// The effect, or the other form of a friction, that explains as much in its place, now that the others are there.
     pub by: String,
 }
 

@@ -8,10 +8,12 @@
 //! | form | family |
 //! |---|---|
 //! | `onset-form` | [`onset`]: any onset, by knots of speed |
+//! | `arctan-form`, `tanh-form` | [`smooth`]: an onset along a smooth curve of one speed |
 //! | `exponent-form` | [`exponent`]: it falls as e^(−(v / v_s)^δ) |
 
 mod exponent;
 mod onset;
+mod smooth;
 
 use super::changes::Hooks;
 use super::{ActiveEffect, Changes, EFFECTS, Effect, EffectParameter, Measure, Nature};
@@ -23,7 +25,7 @@ struct Family {
     effect: &'static Effect,
     /// What of the law differs, in words.
     differs_in: &'static str,
-    /// Forms from which a search begins; none of a friction that cannot have it.
+    /// Forms from which a search begins, with each start of a shape; none of a friction that cannot have it.
     begins: fn(&Formed) -> Vec<ActiveEffect>,
     /// Steady friction at a speed above 0, over that of sliding.
     at: fn(&ActiveEffect, f64) -> f64,
@@ -33,7 +35,12 @@ struct Family {
     speeds: fn(&ActiveEffect) -> [f64; 2],
 }
 
-static FAMILIES: [Family; 2] = [onset::FAMILY, exponent::FAMILY];
+static FAMILIES: [Family; 4] = [
+    onset::FAMILY,
+    smooth::ARCTAN,
+    smooth::TANH,
+    exponent::FAMILY,
+];
 
 /// A friction of which the form may be another.
 #[derive(Clone, Debug)]
@@ -178,7 +185,8 @@ mod tests {
     #[test]
     fn a_form_begins_as_the_law_of_the_library_and_knows_its_friction() {
         let all = forms("coulomb-friction", &[40.0], Some([15.0, 0.01]));
-        assert_eq!(all.len(), 2);
+        // Knots, four speeds of each smooth curve, an exponent.
+        assert_eq!(all.len(), 1 + 4 + 4 + 1);
         for active in &all {
             let form = FrictionForm::of(active).unwrap();
             assert_eq!(form.base().unwrap().values, [40.0]);
@@ -189,7 +197,7 @@ mod tests {
             }
         }
         // A friction that does not fall has no exponent, and a load no form at all.
-        assert_eq!(forms("asymmetric-friction", &[40.0, 30.0], None).len(), 1);
+        assert_eq!(forms("asymmetric-friction", &[40.0, 30.0], None).len(), 9);
         assert!(forms("constant-load", &[40.0], None).is_empty());
     }
 
@@ -206,6 +214,27 @@ mod tests {
             let of_library = level + fall * (-ratio * ratio).exp();
             let expected = 1.0 + (law - of_library) / level;
             assert!((form.at(ratio * velocity) - expected).abs() < 1e-12);
+        }
+    }
+
+    /// By their formulas: a bristle of the shares that are left, beside the curve.
+    #[test]
+    fn smooth_onsets_are_their_curves() {
+        let curves: [(&str, fn(f64) -> f64); 2] = [
+            ("arctan-form", |x| 2.0 * x.atan() / std::f64::consts::PI),
+            ("tanh-form", |x| x.tanh()),
+        ];
+        for (name, curve) in curves {
+            let all = forms("coulomb-friction", &[40.0], None);
+            let mut active = all.into_iter().find(|a| a.effect.name == name).unwrap();
+            let [share, velocity] = active.values.last_chunk_mut().unwrap();
+            (*share, *velocity) = (0.7, 3e-3);
+            let form = FrictionForm::of(&active).unwrap();
+            for speed in [1e-4, 3e-3, 0.05] {
+                let expected = 0.3 + 0.7 * curve(speed / 3e-3);
+                assert!((form.at(speed) - expected).abs() < 1e-12);
+            }
+            assert!((form.with_speed() - 0.7).abs() < 1e-15);
         }
     }
 }

@@ -57,11 +57,7 @@ impl Curves {
             .collect();
         let fitter = Fitter { machine, set };
         let answers = |shape: Shape| {
-            let column = |j: usize| {
-                let series = courses.iter().map(|c| shape.hat(j, c)).collect();
-                answer(&fitter, fit, shape.place, series)
-            };
-            let columns = (0..shape.knots.len()).into_par_iter().map(column).collect();
+            let columns = shape.columns_on(&fitter, fit, &courses);
             (shape, columns)
         };
         Self {

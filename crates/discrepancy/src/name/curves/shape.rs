@@ -4,10 +4,14 @@ use axis_sim::effects::{EffectVariable, Measure};
 use axis_sim::mechanism::Freedom;
 use axis_sim::{Axis, Probe, ReplayError};
 
+use rayon::prelude::*;
+
+use super::answer;
 use super::course::{Course, STANDS, courses};
 use super::variable::{Factor, Place, Variable, is_over};
 use crate::answers::{self, LogSet};
-use crate::estimate::fit::Fit;
+use crate::estimate::columns::Columns;
+use crate::estimate::fit::{Fit, Fitter};
 
 /// A curve: where it acts, on what it depends, and its hats' places.
 #[derive(Debug)]
@@ -145,6 +149,21 @@ impl Shape {
         values
             .map(|x| (low - below..=high + above).contains(x))
             .collect()
+    }
+
+    /// What each of its hats does to the logs of a fit.
+    pub fn columns(&self, fitter: &Fitter<'_>, fit: &Fit) -> Columns {
+        let courses = courses(fitter.machine, fitter.set, &fit.traces);
+        self.columns_on(fitter, fit, &courses)
+    }
+
+    /// The same on these courses of its motion.
+    pub(super) fn columns_on(&self, fitter: &Fitter<'_>, fit: &Fit, courses: &[Course]) -> Columns {
+        let column = |j: usize| {
+            let series = courses.iter().map(|c| self.hat(j, c)).collect();
+            answer(fitter, fit, self.place, series)
+        };
+        (0..self.knots.len()).into_par_iter().map(column).collect()
     }
 
     /// On what it depends, in words.

@@ -11,6 +11,7 @@ use axis_sim::effects::{ActiveEffect, Effect, Formed, FrictionForm, Scales};
 use rayon::prelude::*;
 
 use super::evidence::{BY_CHANCE, BY_ONE_NUMBER};
+use super::promise::one_each;
 use super::refined::Refined;
 use super::state::Search;
 use super::types::Named;
@@ -67,7 +68,8 @@ impl Search<'_> {
         [0.3, 1.0].map(|by| pair(&(by * typical))).to_vec()
     }
 
-    /// Forms that are not there yet, beside the derivatives of the fit's own parameters.
+    /// Forms that are not there yet, beside the derivatives of the fit's own parameters; of each family the
+    /// start that explains most.
     pub(super) fn forms(&self, own: &Columns) -> Vec<Screened> {
         let speeds = self.fit.traces.iter().flat_map(|t| &t.speed);
         let fastest = speeds.fold(0.0_f64, |most, v| most.max(v.abs()));
@@ -100,7 +102,7 @@ impl Search<'_> {
         let families = forms.chunk_by(|a, b| a.effect.name == b.effect.name);
         let screened = families.map(|family| {
             let free = family[0].effect.parameters.iter().filter(|p| is_free(p));
-            self.screened_beside(own, family, free.count())
+            one_each(self.screened_beside(own, family, free.count()))
         });
         screened.flatten().collect()
     }
@@ -257,14 +259,10 @@ impl Search<'_> {
     pub(super) fn effects_before_forms(&self, refined: &mut [Refined]) {
         let has_form = refined.iter().any(Refined::is_form_of_own);
         let is_own = |r: &Refined| has_form && r.is_rise();
-        if let Some(rise) = refined.first().filter(|r| is_own(r)) {
-            let least = INSTEAD * rise.gain;
-            let form = refined
-                .iter()
-                .position(|r| r.is_form_of_own() && r.gain >= least);
-            if let Some(at) = form {
-                refined[..=at].rotate_right(1);
-            }
+        if let Some(rise) = refined.iter().position(is_own) {
+            let least = INSTEAD * refined[rise].gain;
+            let is_instead = |r: &Refined| r.is_form_of_own() && r.gain >= least;
+            refined[rise..].sort_by_key(|r| !is_instead(r));
         }
         let is_other = |r: &Refined| r.is_of_another_form() || is_own(r);
         let Some(first) = refined.first().filter(|r| is_other(r)) else {

@@ -11,9 +11,9 @@ use rayon::prelude::*;
 
 use super::refined::Refined;
 use super::state::Search;
-use crate::answers::Rest as Residual;
+use crate::answers::{Rest as Residual, State};
 use crate::estimate::columns::Columns;
-use crate::estimate::fit::Fitter;
+use crate::estimate::fit::{Fit, Fitter};
 use crate::name::curves::{Rest, Shape};
 use crate::spectrum::Amplitudes;
 
@@ -59,6 +59,41 @@ pub(super) struct FreeCurves<'a> {
 
 /// Rounds of a law's fit, each weighed by what the last one left.
 const ROUNDS: usize = 6;
+
+/// Fall of D that is worth another round with simulations.
+const ENOUGH: f64 = 0.5;
+
+/// A law fitted beside all parameters in the linearised model.
+struct Beside {
+    /// Where that began.
+    from: State,
+    /// By how much all parameters move, and the law's values.
+    step: DVector<f64>,
+    /// D of what it leaves, with what its numbers bring by chance.
+    deviance: f64,
+}
+
+impl Beside {
+    /// Weighed in each round by what the last one left, as of a large gap the first is weighed by the gap itself.
+    fn of(curve: &Solved<'_>, own: &Columns, fitter: &Fitter<'_>, fit: &Fit) -> Self {
+        let columns: Columns = own.iter().chain(curve.columns).cloned().collect();
+        let mut left = fit.rest.clone();
+        let mut step = DVector::zeros(columns.len());
+        for _ in 0..ROUNDS {
+            step = fitter.solve_beside(&left, fit, &columns).step;
+            left.clone_from(&fit.rest);
+            for (column, by) in columns.iter().zip(step.iter()) {
+                let pairs = left.iter_mut().flatten().zip(column.iter().flatten());
+                pairs.for_each(|(l, c)| *l -= c * *by);
+            }
+        }
+        Self {
+            from: fit.state.clone(),
+            deviance: fitter.set.layout.deviance(&left) + BY_CHANCE * curve.columns.len() as f64,
+            step,
+        }
+    }
+}
 
 /// A curve, fitted.
 struct Solved<'a> {
@@ -116,55 +151,98 @@ impl<'a> FreeCurves<'a> {
     /// The law over one variable that does most on the fitted and the check logs together, beside what all
     /// effects of a search do on the same samples; `None` without curves.
     pub(super) fn most_probable(&self, own: &Columns, effects: &Search<'_>) -> Option<Rival> {
-        let rivals = self.all.iter().take(TOLD);
-        let rivals = rivals.filter_map(|curve| self.rival(curve, own, effects));
+        let (search, fitter) = (self.search, self.search.fitter());
+        // Without effects known parameters make up for them, and with them they are where they belong, which may be
+        // too far for a linearised model.
+        let mut state = search.fit.state.clone();
+        state.shares.clone_from(&effects.fit.state.shares);
+        let starts = [Some(search.fit.clone()), fitter.at(state).ok()];
+        let starts: Vec<Fit> = starts.into_iter().flatten().collect();
+        let pairs = self
+            .all
+            .iter()
+            .flat_map(|c| starts.iter().map(move |s| (c, s)));
+        let beside = |(curve, start): (_, &Fit)| (curve, Beside::of(curve, own, &fitter, start));
+        let mut all: Vec<_> = pairs
+            .collect::<Vec<_>>()
+            .into_par_iter()
+            .map(beside)
+            .collect();
+        all.sort_by(|(_, a), (_, b)| a.deviance.total_cmp(&b.deviance));
+        let rivals = all.iter().take(TOLD * starts.len());
+        let rivals = rivals.filter_map(|(curve, beside)| self.rival(curve, own, beside, effects));
         rivals.max_by(|a, b| (a.fit + a.check).total_cmp(&(b.fit + b.check)))
     }
 
-    /// A law over the variable of a curve, fitted together with all that is there: weighed in each round by
-    /// what the last one left, as of a large gap the first is weighed by the gap itself. `None` if the machine
-    /// does not run so.
-    fn rival(&self, curve: &Solved<'_>, own: &Columns, effects: &Search<'_>) -> Option<Rival> {
+    /// The law over the variable of a curve, simulated. `None` if the machine does not run so.
+    fn rival(
+        &self,
+        curve: &Solved<'_>,
+        own: &Columns,
+        beside: &Beside,
+        effects: &Search<'_>,
+    ) -> Option<Rival> {
         let Search {
             machine,
             fit,
             check,
             ..
         } = self.search;
-        let [fitter, checker] = [self.search.fitter(), self.search.checker()];
-        let columns: Columns = own.iter().chain(curve.columns).cloned().collect();
-        let mut left = fit.rest.clone();
-        let mut step = DVector::zeros(columns.len());
-        for _ in 0..ROUNDS {
-            step = fitter.solve_beside(&left, fit, &columns).step;
-            left.clone_from(&fit.rest);
-            for (column, by) in columns.iter().zip(step.iter()) {
-                let pairs = left.iter_mut().flatten().zip(column.iter().flatten());
-                pairs.for_each(|(l, c)| *l -= c * *by);
-            }
-        }
-        let values = &step.as_slice()[own.len()..];
-        let state = fitter.moved(&fit.state, &step, 1.0);
+        let checker = self.search.checker();
+        let (fitted, values) = self.refitted(curve.shape, own.len(), beside)?;
         let shape = curve.shape;
-        let fitted = fitter.at(state.clone()).ok()?;
-        let on_fit =
-            fit.deviance - fitted.deviance + shape.told(machine, fitter.set, &fitted, values);
+        let on_fit = fit.deviance - fitted.deviance;
         // Beyond the outermost knots nothing is known of the law, so nothing counts there of either.
         let set = checker.set;
-        let moved = checker.at(state).ok()?;
+        let moved = checker.at(fitted.state).ok()?;
         let fall = |after: &mut Residual| {
             let mut before = set.rest(&check.traces);
             shape.fall_inside(machine, set, check, [&mut before, after])
         };
-        let mut with_law = shape.rest(machine, set, &moved, values).ok()?;
+        let mut with_law = shape.rest(machine, set, &moved, &values).ok()?;
         let mut with_effects = set.rest(&effects.check.traces);
         Some(Rival {
             over: shape.depends_on(),
             fit: on_fit - BY_CHANCE * curve.columns.len() as f64,
             // With other parameters the rest may be nearer by itself; the law must do it.
-            check: fall(&mut with_law).min(shape.told(machine, set, &moved, values)),
+            check: fall(&mut with_law).min(shape.told(machine, set, &moved, &values)),
             of_effects: fall(&mut with_effects),
         })
+    }
+
+    /// A law fitted together with all that is there, from where the linearised model leads on with simulations, as
+    /// effects are: known parameters may have moved far to make up for it. The law's values, and the fit with it.
+    fn refitted(&self, shape: &Shape, own: usize, beside: &Beside) -> Option<(Fit, Vec<f64>)> {
+        let (search, fitter) = (self.search, self.search.fitter());
+        let at = |from: &State, values: &[f64], step: &DVector<f64>| {
+            let alone = fitter.at(fitter.moved(from, step, 1.0)).ok()?;
+            let values: Vec<f64> = (values.iter().zip(step.iter().skip(own)))
+                .map(|(value, by)| value + by)
+                .collect();
+            let rest = shape.rest(search.machine, fitter.set, &alone, &values);
+            let rest = fitter.set.amplitudes(&rest.ok()?);
+            let deviance = fitter.set.layout.deviance(&rest) + fitter.departure(&alone.state);
+            let fit = Fit {
+                rest,
+                deviance,
+                ..alone
+            };
+            Some((fit, values))
+        };
+        let none = vec![0.0; shape.knots.len()];
+        let mut best = at(&beside.from, &none, &beside.step)?;
+        for _ in 0..ROUNDS {
+            let (fit, values) = &best;
+            let mut columns = fitter.known_columns(fit);
+            columns.extend(fitter.effect_columns(fit, 0));
+            columns.extend(shape.columns(&fitter, fit));
+            let step = fitter.solve_beside(&fit.rest, fit, &columns).step;
+            match at(&fit.state, values, &step) {
+                Some(next) if next.0.deviance < fit.deviance - ENOUGH => best = next,
+                _ => break,
+            }
+        }
+        Some(best)
     }
 
     /// Whether what was refined explains about as much as the best curve over what it

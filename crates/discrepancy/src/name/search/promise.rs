@@ -245,7 +245,7 @@ pub(super) fn best_first(screening: &Screening) -> Vec<Screened> {
 }
 
 /// The best of each effect, best first.
-fn one_each(mut all: Vec<Screened>) -> Vec<Screened> {
+pub(super) fn one_each(mut all: Vec<Screened>) -> Vec<Screened> {
     all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     let mut seen: Vec<&str> = Vec::new();
     all.retain(|s| {

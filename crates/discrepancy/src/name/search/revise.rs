@@ -6,7 +6,7 @@
 //! search would now take another in its place, that comes (sequential
 //! replacement: A. Miller, Subset Selection in Regression, 2nd ed., 2002, §3.6).
 
-use axis_sim::effects::{ActiveEffect, Effect};
+use axis_sim::effects::{ActiveEffect, Effect, EffectVariable};
 
 use super::evidence::{BY_CHANCE, BY_ONE_NUMBER, MATERIAL};
 use super::form::is_form;
@@ -61,7 +61,7 @@ impl Search<'_> {
                 continue;
             }
             let values = self.named[index].when_named.clone();
-            let other = (!accepted && !form).then(|| without.with_another(dropped.name, loss));
+            let other = (!accepted && !form).then(|| without.with_another(dropped, loss));
             if let Some((other, by)) = other.flatten() {
                 tracing::debug!(of = dropped.name, by, "exchange");
                 let when_named = ActiveEffect {
@@ -203,14 +203,18 @@ impl Search<'_> {
     }
 
     /// With what the search now takes next, if that is something else than what
-    /// was taken out, which had brought this `loss`; and its name.
-    fn with_another(mut self, taken_out: &str, loss: f64) -> Option<(Self, &'static str)> {
+    /// was taken out, which had brought this `loss`; and its name. An effect over speed may have stood for
+    /// another form of a friction.
+    fn with_another(mut self, taken_out: &Effect, loss: f64) -> Option<(Self, &'static str)> {
         let own = self.own_columns();
         let promises = Promises::new(&self, &own);
-        let others = |effect: &Effect| effect.name != taken_out && self.wanted(effect, &[]);
+        let others = |effect: &Effect| effect.name != taken_out.name && self.wanted(effect, &[]);
         let screenings = promises.screenings(&own, others);
-        let rival = promises.one_by_one(screenings.first()?);
-        if rival.first()?.gain < RIVAL * loss {
+        let mut rivals = promises.one_by_one(screenings.first()?);
+        if taken_out.shown_over == EffectVariable::Speed {
+            rivals.extend(self.forms(&own));
+        }
+        if rivals.iter().all(|rival| rival.gain < RIVAL * loss) {
             return None;
         }
         let before = self.fit.deviance;
@@ -219,7 +223,7 @@ impl Search<'_> {
         let by = self.named.get(known)?.name;
         let another = added
             && self.named.len() == known + 1
-            && by != taken_out
+            && by != taken_out.name
             && before - self.fit.deviance >= loss - BY_CHANCE;
         another.then_some((self, by))
     }
