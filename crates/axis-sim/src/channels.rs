@@ -8,7 +8,7 @@ use crate::actuator::Effort;
 use crate::axis::Axis;
 use crate::balance::torque_channels;
 use crate::cycle::Cycle;
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 
 /// A channel of a log.
 #[derive(Clone, Copy, Debug)]

@@ -101,6 +101,7 @@ mod cycle;
 mod effect_forces;
 pub mod effects;
 mod error;
+mod freedom;
 pub mod friction;
 mod late_clock;
 pub mod load;
@@ -115,11 +116,12 @@ mod replay;
 pub mod sensor;
 mod six_digits;
 pub mod thermal;
+mod value_range;
 mod work;
 
 pub use axis::{
     Axis, BalanceSettings, Experiment, FOLLOWING_ERROR_LIMIT, LoadSensor, MoveSpec, SampleRanges,
-    Sensors, Simulation, Stroke, Tolerances, ValueRange,
+    Sensors, Simulation, Stroke, Tolerances,
 };
 pub use axis_file::{AxisFileError, Registry, TABLES_WITHOUT_PARTS, toml_message};
 pub use balance::{
@@ -139,6 +141,7 @@ pub use plant::Start;
 pub use recorder::{CsvRecorder, FlowRecorder, Recorder};
 pub use replay::{LoggedReference, Probe, Replay, ReplayError, SampledCurve, Stored, Trace};
 pub use six_digits::SixDigits;
+pub use value_range::ValueRange;
 pub use work::{FREQUENCIES, MOST_STEPS};
 
 /// The README's example, run as a test.

@@ -1,5 +1,6 @@
 //! Making one shard.
 
+use crate::shard_paths::paths;
 use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -59,12 +60,6 @@ pub fn forget_whole(job: &dyn Job) -> Result<(), CampaignError> {
     let _ = std::fs::remove_dir(job.folder().join("shards"));
     let _ = std::fs::remove_dir(job.folder());
     Ok(())
-}
-
-/// The files of a shard: itself, before it is whole, its journal.
-pub(crate) fn paths(job: &dyn Job, shard: Shard) -> [PathBuf; 3] {
-    let files = shard.files(job.name());
-    files.map(|file| job.folder().join("shards").join(file))
 }
 
 /// Makes a shard of a job on the threads of the current rayon pool, and answers its

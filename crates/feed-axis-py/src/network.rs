@@ -194,3 +194,40 @@ impl PyNetwork {
         format!("Network({}, {parameters} parameters)", sizes.join("-"))
     }
 }
+
+#[pymethods]
+impl PyAxis {
+    /// Trains the one-cycle predictor: what the best linear map of the samples leaves.
+    #[pyo3(signature = (samples, *, hidden = Layers(vec![34, 19, 8]), epochs = 500, seed = 1, threads = 0, progress = None))]
+    #[allow(clippy::too_many_arguments)]
+    fn train(
+        &self,
+        py: Python<'_>,
+        samples: PyRef<'_, Samples>,
+        hidden: Layers,
+        #[pyo3(from_py_with = arrays::epochs)] epochs: usize,
+        #[pyo3(from_py_with = arrays::seed)] seed: u64,
+        #[pyo3(from_py_with = arrays::threads)] threads: usize,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PyNetwork> {
+        let (axis, samples) = (self.axis.clone(), samples.0.clone());
+        long(py, progress, move |hook| {
+            let plan = NetworkPlan {
+                hidden: hidden.0,
+                epochs,
+                initial_damping: INITIAL_DAMPING,
+                seed,
+                threads,
+            };
+            let ranges = ranges(&axis).map_err(raise::<NetworkError>)?;
+            let trained = train(&ranges, &samples, &plan, None, |report, _| {
+                hook.done("train", report.epoch as u64, epochs as u64);
+            });
+            let trained = trained.map_err(raise::<NetworkError>)?;
+            Ok(PyNetwork {
+                losses: trained.history.iter().map(|r| r.loss).collect(),
+                network: trained.network,
+            })
+        })
+    }
+}

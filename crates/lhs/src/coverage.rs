@@ -1,7 +1,7 @@
 //! How the points of a design lie to their nearest neighbours.
 
 use crate::Design;
-use crate::criteria::distance;
+use crate::distance::distance;
 use rayon::prelude::*;
 
 /// The edges of the shortest tree that joins all points.

@@ -1,5 +1,6 @@
 //! A log file that is written aside and put in place whole.
 
+use super::in_place::in_place;
 use std::io;
 use std::path::Path;
 
@@ -105,11 +106,4 @@ impl LogSink for LogFile {
     fn finish(self: Box<Self>) -> io::Result<()> {
         in_place(self.sink.finish()?)
     }
-}
-
-/// Renames what was written aside.
-pub(super) fn in_place(file: AtomicWriteFile) -> io::Result<()> {
-    // Before the commit, which leaves the file aside behind where flushing fails.
-    file.sync_all()?;
-    file.commit()
 }

@@ -8,6 +8,7 @@
 mod adaptive;
 mod adaptive_feedback;
 mod cycle_law;
+mod cycle_names;
 mod drive_terms;
 mod feedback;
 mod feedback_helps;
@@ -15,6 +16,7 @@ mod feedforward;
 mod iterative;
 mod learned;
 mod lugre;
+mod need;
 mod network;
 mod network_lugre;
 mod network_lugre_printed;
@@ -34,9 +36,11 @@ use trajectories::Motion;
 use crate::PipelineError;
 use crate::heat::HeatAhead;
 use crate::residuals::AnyLearner;
-pub use cycle_law::{CYCLE_BY_CYCLE, CycleLaw, PositionLaw, StreamedPlan};
+pub use cycle_law::{CycleLaw, PositionLaw, StreamedPlan};
+pub use cycle_names::CYCLE_BY_CYCLE;
 pub use drive_terms::reversal_start;
 pub use feedforward::Feedforward;
+pub use need::Need;
 pub use network::KIND as NETWORK;
 pub use network_lugre::KIND as NETWORK_LUGRE;
 pub use none::KIND as NONE;
@@ -165,35 +169,6 @@ pub enum ReportTable {
     WithFrictionFeedforward,
     /// More strategies, which the paper does not have.
     More,
-}
-
-/// What is found from simulation or measurement, and a strategy may be made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Need {
-    /// The trained one-cycle network.
-    Network,
-    /// The transfer functions of the tracking error.
-    TransferFunctions,
-    /// The friction parameters identified on the machine.
-    IdentifiedFriction,
-}
-
-impl Need {
-    /// All of them.
-    pub const ALL: [Self; 3] = [
-        Self::Network,
-        Self::TransferFunctions,
-        Self::IdentifiedFriction,
-    ];
-
-    /// In words.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Network => "the trained network",
-            Self::TransferFunctions => "the transfer functions of the tracking error",
-            Self::IdentifiedFriction => "the identified friction parameters",
-        }
-    }
 }
 
 impl StrategyKind {

@@ -1,5 +1,6 @@
 //! What belongs to no part: stroke, step, effects, tolerances, columns of logs.
 
+use crate::value_range::ValueRange;
 use std::collections::BTreeMap;
 
 use axis_log::{ColumnMap, ColumnUnit, Mapping};
@@ -8,9 +9,9 @@ use super::error::AxisFileError;
 use super::fields::Fields;
 use super::keys::SHARE;
 use crate::SixDigits;
-use crate::axis::{Axis, BalanceSettings, Stroke, Tolerances, ValueRange};
+use crate::axis::{Axis, BalanceSettings, Stroke, Tolerances};
 use crate::effects::{ActiveEffect, Effect, EffectParameter, Scales};
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 use crate::part::units::{MOTOR_SPEED, MOTOR_TORQUE};
 use crate::part::{Key, Known, Values};
 use crate::rating::{

@@ -1,5 +1,6 @@
 //! An axis from the tables of its file.
 
+use crate::value_range::ValueRange;
 use std::path::PathBuf;
 
 use trajectories::{Limits, Motion, SCurve};
@@ -14,7 +15,7 @@ use crate::SixDigits;
 use crate::actuator::{Actuator, Effort};
 use crate::axis::{
     Axis, Experiment, FOLLOWING_ERROR_LIMIT, LoadSensor, MoveSpec, SampleRanges, Sensors,
-    Simulation, Stroke, Tolerances, ValueRange,
+    Simulation, Stroke, Tolerances,
 };
 use crate::closed_loop::ClosedLoop;
 use crate::control::{Control, absent, gain_fits, gain_turns};

@@ -7,7 +7,7 @@ use super::error::BalanceError;
 use super::filter::{LowPass, derivative, integral};
 use super::spectrum::{Noise, Source};
 use crate::axis::{Axis, LoadSensor};
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 
 /// A coordinate with its derivatives, one value a sample.
 #[derive(Clone, Debug)]

@@ -1,6 +1,8 @@
 //! Frequency responses that were measured on an axis: estimated from its logs, compared with its model.
 
+mod beside_model;
 mod compare;
+mod model_at;
 mod plant;
 mod record;
 mod traps;
@@ -220,7 +222,7 @@ impl MeasuredDrive {
         let speed = estimate(recorded.speed, false)?;
         let all: Vec<Record<'_>> = recorded.records(recorded.load, true).collect();
         let load = FrequencyResponse::of_all(&all, by, averaging)?;
-        let at = compare::ModelAt::new(axis, recorded.position)?;
+        let at = model_at::ModelAt::new(axis, recorded.position)?;
         let plant = MeasuredPlant::new(
             &at,
             [angle.as_ref(), speed.as_ref(), Some(&load)],
@@ -334,7 +336,7 @@ fn lines(of: &FrequencyResponse) -> Vec<MeasuredLine> {
 fn margins(
     recorded: &Recorded<'_>,
     averaging: Averaging,
-    at: &compare::ModelAt,
+    at: &model_at::ModelAt,
     plant: &MeasuredPlant,
 ) -> Result<Option<MeasuredMargins>, LoopError> {
     // u = S F r: open loop from r to u, so H1 has no bias.

@@ -1,5 +1,6 @@
 //! `discover`: what a model lacks, from logs or from a table of errors.
 
+use super::discover_files::{AXIS, DISCOVERY, NEXT, REPORT};
 use std::path::{Path, PathBuf};
 
 use axis_log::intake::{IntakeError, Options as Intake, files, prepare};
@@ -142,14 +143,6 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
     print("discover", &found)
 }
 
-/// What was found, and the axis file with it.
-pub(super) const DISCOVERY: &str = "discovery.json";
-pub(super) const AXIS: &str = "axis.toml";
-/// File of the proposed motion.
-pub(super) const NEXT: &str = "next-experiment.toml";
-/// What logs and what a table of errors show: in one folder, neither takes the other's
-/// place, nor that of `pipeline`'s summary.json.
-pub(super) const REPORT: &str = "report.html";
 const RANKING: &str = "ranking.json";
 const RANKING_REPORT: &str = "ranking.html";
 
