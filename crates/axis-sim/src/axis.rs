@@ -1,6 +1,5 @@
 //! An axis: the parts of a machine and how it is run, checked.
 
-use crate::value_range::ValueRange;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -18,6 +17,7 @@ use crate::mechanism::{Freedom, Mechanism, SolutionMethod};
 use crate::part::{Known, Part, PartError, Role, Values};
 use crate::rating::DataSheets;
 use crate::sensor::Sensor;
+use crate::value_range::ValueRange;
 
 /// Tracking error at which a run is given up where the axis file does not say, m.
 pub const FOLLOWING_ERROR_LIMIT: f64 = 0.02;

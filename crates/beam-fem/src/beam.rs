@@ -1,8 +1,8 @@
 //! A beam and its assembled matrices, dense and banded.
 
-use crate::banded::free_dofs;
 use nalgebra::DMatrix;
 
+use crate::banded::free_dofs;
 use crate::element::Coefficients;
 use crate::error::check_size;
 use crate::modes::check_square;

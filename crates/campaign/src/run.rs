@@ -1,6 +1,5 @@
 //! Making one shard.
 
-use crate::shard_paths::paths;
 use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -12,6 +11,7 @@ use rayon::prelude::*;
 use crate::journal::Journal;
 use crate::row::{decode, encode};
 use crate::shard_file::{self, Label, ShardFile};
+use crate::shard_paths::paths;
 use crate::{CampaignError, Failure, Job, Merged, Row, Shard, instruction_set, try_lock};
 
 /// Rows of a row group, and bytes after which one ends before that.

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use axis_pipeline::training::test;
+use axis_pipeline::sampling::ranges;
+use axis_pipeline::training::{INITIAL_DAMPING, NetworkPlan, test, train};
 use cfnn::artifact::{network_from_bytes, network_to_bytes};
 use cfnn::train::{Dataset, Trainer, TrainingSettings};
 use cfnn::{Network, Shape};
@@ -13,6 +14,7 @@ use pyo3::types::{PyBytes, PyTuple, PyType};
 
 use crate::arrays;
 use crate::arrays::{Layers, rows, rows_of};
+use crate::axis::PyAxis;
 use crate::errors::{NetworkError, bytes_of, of_file, raise};
 use crate::long::long;
 use crate::one_cycle::Samples;

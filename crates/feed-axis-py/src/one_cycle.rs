@@ -1,14 +1,12 @@
 //! One-cycle samples of an axis, and the predictor that is trained on them.
 
-use axis_pipeline::sampling::{SamplePlan, SampleSet, Sampler, SpeedDensity, ranges};
-use axis_pipeline::training::{INITIAL_DAMPING, NetworkPlan, train};
+use axis_pipeline::sampling::{SamplePlan, SampleSet, Sampler, SpeedDensity};
 use axis_sim::CycleInput;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 
 use crate::arrays;
-use crate::arrays::Layers;
 use crate::axis::PyAxis;
 use crate::errors::{NetworkError, raise};
 use crate::long::long;

@@ -3,12 +3,11 @@
 use std::sync::Arc;
 
 use axis_machine::{CoupledMachine, Coupling, DriveSensors, Laps};
-use axis_pipeline::strategies::{NONE, STRATEGIES, StrategyKind};
+use axis_pipeline::strategies::{NONE, Predictors, STRATEGIES, StrategyKind};
 use axis_sim::Axis;
 use compensator::DriveModel;
 use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result, miette};
-use rayon::prelude::*;
 use toolpath::named::{CircleTest, Direction};
 use toolpath::{FeedLimits, FeedProfile};
 

@@ -1,28 +1,22 @@
 //! Rows of the table of contour errors that run machines.
 
-use super::contour_bench::{Bench, Left, Task, laps, planned, series, strategy};
 use std::path::Path;
-use std::sync::Arc;
 
-use axis_machine::{
-    AxisCoupling, BaseMode, CoupledMachine, Coupling, DriveSensors, Laps, MeasuredCircle,
-    fit_circles,
-};
+use axis_machine::{AxisCoupling, BaseMode, CoupledMachine, Coupling, MeasuredCircle, fit_circles};
 use axis_pipeline::robustness::wrong_model;
-use axis_pipeline::strategies::{NONE, Predictors, STRATEGIES, StrategyKind, named};
+use axis_pipeline::strategies::{NONE, STRATEGIES, named};
 use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, EFFECTS};
 use compensator::DriveModel;
-use discover_matrix::hidden::Noise;
 use lugre::{LuGre, Parameters};
-use miette::{IntoDiagnostic, Result, miette};
+use miette::{IntoDiagnostic, Result};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use toolpath::iso230_4::NominalCircle;
 use toolpath::named::{CircleTest, Direction, butterfly};
-use toolpath::{FeedLimits, FeedProfile};
 
+use super::contour_bench::{Bench, Left, Task, laps, planned, series, strategy};
 use super::contour_measured::Measured;
 use super::{contour_geometry, contour_networks, contour_pairs};
 

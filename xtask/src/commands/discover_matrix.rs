@@ -1,23 +1,20 @@
 //! `discover-matrix`: machines with something hidden in them, searched blind,
 //! and the score.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::OnceLock;
 
 use axis_sim::Axis;
 use campaign::Job;
-use clap::Args;
-use discover_matrix::matrix::{Case, CaseOutcome, Sizes, cases};
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
+use discover_matrix::matrix::{Sizes, cases};
+use miette::{IntoDiagnostic, Result, miette};
 
 use super::matrix_job::Matrix;
 use super::matrix_kept::{Kept, replaceable};
 pub use super::matrix_options::Options;
 use crate::page::matrix;
 use feed_axis::jobs::{JobOptions, Sharding};
-use feed_axis::output::{ready, say, write_whole};
+use feed_axis::output::ready;
 
 impl JobOptions for Options {
     fn job(&self) -> Result<Box<dyn Job>> {

@@ -1,7 +1,6 @@
 //! `heat-proof`: errors of an hour of heat, of fitted models, and of both corrections together, all
 //! against a simulator of its own (`independent_axis::HeatedScrew`).
 
-use super::heat_found::{Found, Row};
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -14,11 +13,11 @@ use compensator::NoCompensation;
 use feed_axis::output::{Worded, note, print};
 use independent_axis::{HeatedScrew, Motion, there_and_back};
 use miette::{IntoDiagnostic, Result};
-use serde::Serialize;
 use trajectories::{Program, Step};
 
-use super::heat_both::{AFTER, Cases, Compensated, kept};
-use super::heat_identified::{Identified, identified};
+use super::heat_both::{AFTER, Cases, kept};
+use super::heat_found::{Found, Row};
+use super::heat_identified::identified;
 use super::heat_table;
 
 /// Options of the command.

@@ -1,10 +1,8 @@
 //! `tuning`: the example axes tuned, beside the figures of an independent search.
 
 use std::fmt::Write;
-use std::path::PathBuf;
 
 use axis_sim::Axis;
-use clap::Args;
 use drive_loop::{LoopSet, TuneSettings, Tuning, moves, with_acceleration};
 use feed_axis::output::{Worded, note, print};
 use miette::{IntoDiagnostic, Result, miette};

@@ -1,12 +1,12 @@
 //! A log file that is written aside and put in place whole.
 
-use super::in_place::in_place;
 use std::io;
 use std::path::Path;
 
 use atomic_write_file::AtomicWriteFile;
 
 use super::csv::CsvSink;
+use super::in_place::in_place;
 use super::{LogSink, WriteError, WriteProblem};
 use crate::log::Log;
 

@@ -1,6 +1,5 @@
 //! What belongs to no part: stroke, step, effects, tolerances, columns of logs.
 
-use crate::value_range::ValueRange;
 use std::collections::BTreeMap;
 
 use axis_log::{ColumnMap, ColumnUnit, Mapping};
@@ -18,6 +17,7 @@ use crate::rating::{
     AxisDuty, DataSheets, MOTOR_CURVE, MotorPoint, RATING_KEYS, about, is_linear_unit,
 };
 use crate::thermal::{THERMAL_KEYS, is_of_screws};
+use crate::value_range::ValueRange;
 use crate::work::{MOST_SUBSTEPS, substeps_of};
 
 /// The entries of `[[effects]]`: `name`, and each parameter in SI units.

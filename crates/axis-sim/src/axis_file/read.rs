@@ -1,6 +1,5 @@
 //! An axis from the tables of its file.
 
-use crate::value_range::ValueRange;
 use std::path::PathBuf;
 
 use trajectories::{Limits, Motion, SCurve};
@@ -25,6 +24,7 @@ use crate::mechanism::{Freedom, Mechanism, SolutionMethod};
 use crate::part::{Key, Part, PartKind, Values};
 use crate::rating::DataSheets;
 use crate::sensor::Sensor;
+use crate::value_range::ValueRange;
 use crate::work::{MOST_STEPS, cycles_of, substeps_of};
 
 /// Tracking error at which a run is given up where a file of an axis that turns does

@@ -1,11 +1,11 @@
 //! `[rating]` of an axis and what the file says of the same parts elsewhere, as the check needs them.
 
-use super::data_sheets::{DataSheets, MotorPoint};
 use std::f64::consts::PI;
 
 use axis_rating::{DcLink, MotorVoltage, RollingElement, TorqueCurve};
 
 use super::CheckError;
+use super::data_sheets::{DataSheets, MotorPoint};
 use crate::axis::Axis;
 use crate::freedom::Freedom;
 use crate::part::{Role, Values};

@@ -6,12 +6,12 @@
 //! of the last moves *before* it learned from them, and no stretch of the last one, nor its
 //! slow part, where an axis breaks away and errors peak, would have been worse with it.
 
-use super::unexplained::Unexplained;
 use std::vec::Vec;
 
 use libm::sqrt;
 use nalgebra::{DMatrix, DVector};
 
+use super::unexplained::Unexplained;
 use super::{ResidualBasis, ResidualRow, ResidualTables};
 
 /// Part of the power of a move not learned from that must be explained for use, and of the

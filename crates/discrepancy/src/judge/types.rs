@@ -1,6 +1,5 @@
 //! What `discovery.json` holds.
 
-use super::recalibrated::Recalibrated;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use trajectories::Program;
@@ -9,6 +8,7 @@ use super::assessment::Assessment;
 use super::experiment::Proposal;
 use super::form::FormFound;
 use super::likeness::Likeness;
+use super::recalibrated::Recalibrated;
 use super::unknown::Unknown;
 use crate::answers::LogSet;
 use crate::name::gap::Gap;

@@ -1,8 +1,6 @@
 //! `contour`: two axes on a circle, in both directions; a machine on any path.
 
-use super::contour_found::{AFTER_REVERSAL, Both, Reversal};
 use std::f64::consts::FRAC_PI_4;
-use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -13,14 +11,13 @@ use axis_sim::{Axis, ClosedLoop, Measured};
 use clap::Args;
 use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result, WrapErr};
-use serde::{Deserialize, Serialize};
-use toolpath::iso230_4::{
-    CircleFigures, DirectionFigures, NominalCircle, figures, quadrant_glitches,
-};
+use toolpath::iso230_4::{DirectionFigures, NominalCircle, figures, quadrant_glitches};
 use toolpath::named::{CirclePath, CircleTest, Direction};
 use toolpath::{FeedLimits, FeedProfile};
 
+use super::contour_circle::{Contoured, Turned};
 use super::contour_drives::ContourError;
+use super::contour_found::{AFTER_REVERSAL, Both, Reversal};
 use super::contour_laps::{self, ReferenceCorrection, Run};
 use super::contour_paths::{LapOptions, PathOptions};
 use super::contour_results::ResultFolders;

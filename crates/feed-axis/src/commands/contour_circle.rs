@@ -1,5 +1,12 @@
 //! What a circle of two axes showed.
 
+use std::fmt::{self, Write};
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::contour_found::{Both, Reversal};
+
 /// What was found, in µm.
 #[derive(Serialize)]
 pub struct Contoured<'a> {
@@ -16,7 +23,7 @@ pub struct Contoured<'a> {
     pub clockwise: Turned,
     pub counterclockwise: Turned,
     pub both: Both,
-    report: Option<&'a Path>,
+    pub report: Option<&'a Path>,
 }
 
 /// One direction.

@@ -314,9 +314,11 @@ impl fmt::Display for MachineContoured {
 /// The peak after a reversal.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Reversal {
+    /// X or Y.
     pub axis: String,
     /// Where the axis reverses, from +X towards +Y.
     pub angle_deg: f64,
+    /// Radial deviation there, µm.
     pub peak_um: f64,
 }
 

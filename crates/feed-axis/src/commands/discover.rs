@@ -1,6 +1,5 @@
 //! `discover`: what a model lacks, from logs or from a table of errors.
 
-use super::discover_files::{AXIS, DISCOVERY, NEXT, REPORT};
 use std::path::{Path, PathBuf};
 
 use axis_log::intake::{IntakeError, Options as Intake, files, prepare};
@@ -15,6 +14,7 @@ use discrepancy::{Evidence, Settings};
 use miette::{IntoDiagnostic, Report, Result, WrapErr, miette};
 use toml_edit::{DocumentMut, Item, Value};
 
+use super::discover_files::{AXIS, DISCOVERY, NEXT, REPORT};
 use super::discover_words::{Files, Found, FoundInSummary, summary_words};
 use super::motions::listed;
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};

@@ -1,7 +1,6 @@
 //! `heat`: hours of a duty, what they warm, and how far the axis grows by that.
 
-use super::heat_program::repeated;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use axis_sim::mechanism::Freedom;
 use axis_sim::thermal::LossModel;
@@ -12,10 +11,11 @@ use compensator::NoCompensation;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use trajectories::{Motion, Program, Step};
 
+use super::heat_program::repeated;
 pub use super::heat_time::LONGEST;
 use super::heat_time::time;
 use super::heat_words::{Heated, HeatedNode, HeatedPlace};
-use super::motions::{listed, program_on};
+use super::motions::listed;
 use super::{heat_fit, heat_predict, heat_slow};
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
 use crate::exit::wrong_use;

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use axis_sim::{Axis, SixDigits};
 use miette::{Result, WrapErr};
-use trajectories::Program;
+use trajectories::{Motion, Program};
 
+use super::motions::program_on;
 use crate::exit::wrong_use;
 
 /// A program that can be repeated: it ends where it begins, and stays in the stroke.

@@ -8,7 +8,7 @@ pub(crate) mod compensate;
 mod compensate_moves;
 mod compensate_warm;
 pub(crate) mod contour;
-mod contour_circle;
+pub(crate) mod contour_circle;
 pub mod contour_drives;
 pub mod contour_found;
 pub mod contour_laps;

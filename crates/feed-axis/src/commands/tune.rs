@@ -11,7 +11,7 @@ use miette::{IntoDiagnostic, Result};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::analyse::{Ranges, axis_with, place};
+use super::analyse::{Ranges, axis_with};
 use super::control_table::with_tuned;
 use super::discover::moved;
 use super::frf;
@@ -19,6 +19,7 @@ use crate::context::{DEFAULT_AXIS, read_text};
 use crate::out_file;
 use crate::output::{Worded, print, ready, write_whole};
 use crate::page;
+use crate::page::loops::place;
 use crate::set_key::{SetKey, with_keys};
 
 /// Options of `tune`.

@@ -1,6 +1,7 @@
 //! The page of the drive's loops: margins, Bode's and Nyquist's plots, sensitivities, compliance.
 
 use axis_report::{Cell, Figure, Mark, Notice, Page, Section, Series, Table};
+use axis_sim::SixDigits;
 use drive_loop::{CornerMargins, LoopAnalysis, LoopCurves};
 
 use crate::context::Context;
