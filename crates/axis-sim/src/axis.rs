@@ -9,13 +9,13 @@ use trajectories::{Limits, Program, ProgramUnit, SCurve, TrajectoryError};
 use crate::actuator::{Actuator, Surroundings};
 use crate::control::{Control, absent};
 use crate::cycle::Cycle;
+use crate::data_sheets::DataSheets;
 use crate::effects::{ActiveEffect, TableState};
 use crate::error::SetupError;
 use crate::friction::Friction;
 use crate::load::Load;
 use crate::mechanism::{Freedom, Mechanism, SolutionMethod};
 use crate::part::{Known, Part, PartError, Role, Values};
-use crate::rating::DataSheets;
 use crate::sensor::Sensor;
 use crate::value_range::ValueRange;
 

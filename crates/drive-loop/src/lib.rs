@@ -45,6 +45,7 @@ mod law;
 mod loops;
 mod margins;
 mod measured;
+mod measured_plant;
 mod moves;
 mod plant;
 mod quick_current;

@@ -5,18 +5,18 @@ use std::ops::Range;
 use axis_log::{Channel, Log};
 
 use super::Balance;
-use super::channel::TorqueChannel;
-use super::error::BalanceError;
 use super::filter::LowPass;
 use super::friction_scatter::Remeasured;
 use super::law::Motions;
 use super::motion::{Course, Measured, Whose};
-use super::quality::{BalanceQuality, CutoffReason, TOLERATED};
+use super::quality::{BalanceQuality, TOLERATED};
 use super::spectrum::{least_noise, passed};
 use super::transmission::Transmission;
 use super::wind_up::WindUp;
 use crate::axis::Axis;
+use crate::balance_error::{BalanceError, CutoffReason};
 use crate::replay::ReplayError;
+use crate::torque_channel::TorqueChannel;
 
 /// Highest cut-off of the motion, as a share of the sampling rate: above it, differences are
 /// no derivatives any more.

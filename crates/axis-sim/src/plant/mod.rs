@@ -2,19 +2,18 @@
 
 mod begin;
 mod law;
-mod start;
 mod state;
 
 use std::fmt;
 use std::sync::Arc;
 
 use feed_dynamics::{DriveError, Observation};
-use thiserror::Error;
 
 pub use self::law::Assembly;
-pub use self::start::Start;
 use crate::actuator::Actuating;
 use crate::effects::ScrewState;
+pub use crate::error::AdvanceError;
+pub use crate::start::Start;
 
 /// A machine that motions can be started on.
 pub trait Plant: fmt::Debug + Send + Sync {
@@ -70,25 +69,6 @@ pub trait Running: fmt::Debug + Send + Sync {
     /// Friction at the load as it acts now, N or N·m, and the share of its
     /// Coulomb deflection that the bristles have.
     fn friction(&self) -> [f64; 2];
-}
-
-/// Why a machine in motion cannot go on.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum AdvanceError {
-    /// The mechanics refuse the step: an effect shifts the transmission by no number.
-    #[error(transparent)]
-    Drive(#[from] DriveError),
-    /// No force on the load was found that goes with the motion that it leads to.
-    #[error(
-        "no force on the load is consistent with its motion after {rounds} iterations (relative residual {residual}): friction, loads and effects must be finite, and bounded or growing with the speed"
-    )]
-    LoadNotFound {
-        /// Forces that were tried.
-        rounds: u32,
-        /// What was left of the last one, N or N·m.
-        residual: f64,
-    },
 }
 
 /// What can be seen of a machine.

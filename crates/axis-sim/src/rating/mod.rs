@@ -2,7 +2,6 @@
 //!
 //! The formulas are those of `axis_rating`; here are the numbers that go into them.
 
-mod data_sheets;
 mod duty;
 mod item;
 mod keys;
@@ -12,7 +11,7 @@ mod motion;
 mod motor_items;
 mod sheets;
 
-pub use data_sheets::{DataSheets, MotorPoint};
+pub use crate::data_sheets::{DataSheets, MotorPoint};
 pub use duty::{AxisDuty, DutyStretch};
 pub use item::{CheckedItem, ItemState, ItemVerdict};
 

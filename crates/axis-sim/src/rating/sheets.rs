@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use axis_rating::{DcLink, MotorVoltage, RollingElement, TorqueCurve};
 
 use super::CheckError;
-use super::data_sheets::{DataSheets, MotorPoint};
 use crate::axis::Axis;
+use crate::data_sheets::{DataSheets, MotorPoint};
 use crate::freedom::Freedom;
 use crate::part::{Role, Values};
 

@@ -3,8 +3,8 @@
 use frequency_response::{FrequencyResponse, LoopLine, ResponseLine};
 
 use super::model_at::ModelAt;
-use super::plant::{MeasuredPlant, PlantLine};
 use crate::law::LoopAt;
+use crate::measured_plant::{MeasuredPlant, PlantLine};
 use crate::plant::PlantAt;
 
 /// Deviation of a line, as a share of it, from which on it does not count: few averages make a coherence

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::WithDeviation;
 use super::model_at::ModelAt;
-use super::plant::{MeasuredPlant, PlantLine};
+use crate::measured_plant::{MeasuredPlant, PlantLine};
 use crate::plant::Number;
 
 /// Frequencies that may be those of one mode, as a ratio.

@@ -3,7 +3,6 @@
 mod beside_model;
 mod compare;
 mod model_at;
-mod plant;
 mod record;
 mod traps;
 
@@ -19,8 +18,8 @@ use crate::error::LoopError;
 use crate::set::LoopSet;
 use record::Recorded;
 
+pub use crate::measured_plant::MeasuredPlant;
 pub use compare::{ComparedMode, Comparison};
-pub use plant::MeasuredPlant;
 pub use traps::Trap;
 
 /// How a response is measured.

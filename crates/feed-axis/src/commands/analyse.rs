@@ -12,7 +12,7 @@ use miette::{IntoDiagnostic, Result};
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
 use crate::out_file;
 use crate::output::{Worded, print};
-use crate::page;
+use crate::page::loops as loops_page;
 use crate::page::loops::{compliance_unit, place};
 use crate::set_key::{SetKey, with_keys};
 
@@ -81,7 +81,7 @@ pub fn command(options: &Options) -> Result<()> {
     let value = LoopAnalysis::of(&axis, &set).into_diagnostic()?;
     let mut text = words(&value);
     if let Some(path) = &options.report {
-        axis_report::write_atomic(path, &page::loops::page(&value)).into_diagnostic()?;
+        axis_report::write_atomic(path, &loops_page::page(&value)).into_diagnostic()?;
         text += &format!("{}\n", path.display());
     }
     print("analyse", &Worded { text, value })

@@ -20,7 +20,7 @@ use super::motions::listed;
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
 use crate::file_set::FileSet;
 use crate::output::{Worded, note, print, ready};
-use crate::page;
+use crate::page::discovery as discovery_page;
 use crate::program;
 use crate::progress::{bar, spinner};
 use crate::shell;
@@ -133,7 +133,7 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
         let program = toml::to_string(&next.program).into_diagnostic()?;
         files.put(NEXT, program.as_bytes())?;
     }
-    files.put(REPORT, page::discovery::page(&discovered)?.as_bytes())?;
+    files.put(REPORT, discovery_page::page(&discovered)?.as_bytes())?;
     files.publish()?;
     let found = Found {
         discovery,
@@ -291,7 +291,7 @@ fn from_summary(options: &Options, machine: &Axis, table: &Path, out: &Path) -> 
     progress.finish_and_clear();
     let json = serde_json::to_vec_pretty(&found).into_diagnostic()?;
     files.put(RANKING, &json)?;
-    let html = page::discovery::summary_page(axis, &found)?;
+    let html = discovery_page::summary_page(axis, &found)?;
     files.put(RANKING_REPORT, html.as_bytes())?;
     files.publish()?;
     let text = summary_words(axis, &found, measured.len());

@@ -18,7 +18,7 @@ const MOST_HOPS: usize = 32;
 /// What the files of a crate take from one another, from the file of its root on.
 ///
 /// `mod` is no import, nor is the face of a module: a `pub use` of what lies below it, unless the module itself needs it.
-/// A name that was re-exported is taken from the file that defines it. A module is a part of the one around it, so that
+/// A name that was re-exported is taken from the file that defines it and from the one that shows it. A module is a part of the one around it, so that
 /// what it takes from there counts as that one's own.
 pub fn takes(root: &Path) -> Result<Takes> {
     let folder = root.parent().unwrap_or(Path::new("."));
@@ -27,15 +27,14 @@ pub fn takes(root: &Path) -> Result<Takes> {
     let mut takes = Takes::new();
     for (at, module) in tree.modules.iter().enumerate() {
         for path in module.needs() {
-            let Some(target) = tree.resolve(at, path, MOST_HOPS) else {
-                continue;
-            };
-            let defined = &tree.modules[target].file;
-            let Some(name) = path.last().filter(|_| !tree.is_within(at, defined)) else {
-                continue;
-            };
-            let key = (module.file.clone(), defined.clone());
-            takes.entry(key).or_default().insert(name.clone());
+            let Some(name) = path.last() else { continue };
+            for taken in tree.taken(at, path) {
+                let from = &tree.modules[taken].file;
+                if !tree.is_within(at, from) {
+                    let key = (module.file.clone(), from.clone());
+                    takes.entry(key).or_default().insert(name.clone());
+                }
+            }
         }
     }
     Ok(takes)
@@ -100,12 +99,24 @@ impl Tree {
         std::iter::successors(Some(at), parent).any(|module| self.modules[module].file == file)
     }
 
-    /// The module that defines what a path means in module `at`; `None` for other crates and for whole modules.
-    fn resolve(&self, at: usize, path: &[String], hops: usize) -> Option<usize> {
-        match self.find(at, path, hops)? {
-            Found::Item(module) => Some(module),
-            Found::Module(_) => None,
-        }
+    /// The modules that a path takes a name from: the one that defines it, and the one that it is asked of, which shows it.
+    /// Of a whole module, that. None for other crates.
+    fn taken(&self, at: usize, path: &[String]) -> impl Iterator<Item = usize> {
+        let place = &path[..path.len().saturating_sub(1)];
+        let asked = || {
+            self.find(at, place, MOST_HOPS)
+                .filter(|_| !place.is_empty())
+        };
+        let (defines, asked) = match self.find(at, path, MOST_HOPS) {
+            Some(Found::Item(module)) => (Some(module), asked()),
+            Some(Found::Module(module)) => (Some(module), None),
+            None => (None, None),
+        };
+        let shows = match asked {
+            Some(Found::Module(module)) => Some(module),
+            Some(Found::Item(_)) | None => None,
+        };
+        defines.into_iter().chain(shows)
     }
 
     fn find(&self, at: usize, path: &[String], hops: usize) -> Option<Found> {
