@@ -75,7 +75,7 @@ fn job(options: &Options) -> Result<Matrix> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use discover_matrix::matrix::Score;
+    use discover_matrix::matrix::{Case, CaseOutcome, Score};
 
     fn axis() -> Axis {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/axes/liu2025.toml");

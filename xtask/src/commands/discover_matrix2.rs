@@ -178,6 +178,7 @@ impl Job for Matrix2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::commands::matrix_options::MACHINES;
 
     fn machines() -> Vec<Axis> {
         let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
