@@ -75,7 +75,6 @@ pub fn command(options: &Options) -> Result<()> {
     if let Some(samples) = excitation {
         closed_loop = closed_loop.with_excitation(samples);
     }
-    let strategy = options.compensation;
     let mut law = compensator(options, &context, &motion)?;
     let log = options.log.as_deref();
     let mut rows = log
