@@ -18,8 +18,8 @@ const MOST_HOPS: usize = 32;
 /// What the files of a crate take from one another, from the file of its root on.
 ///
 /// `mod` is no import, nor is the face of a module: a `pub use` of what lies below it, unless the module itself needs it.
-/// A name that was re-exported is taken from the file that defines it and from the one that shows it. A module is a part of the one around it, so that
-/// what it takes from there counts as that one's own.
+/// A name that was re-exported is taken from the file that defines it and from the one that shows it. A module is a part
+/// of the one around it, the root apart, so that what it takes from there counts as that one's own.
 pub fn takes(root: &Path) -> Result<Takes> {
     let folder = root.parent().unwrap_or(Path::new("."));
     let mut tree = Tree::default();

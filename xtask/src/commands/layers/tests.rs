@@ -36,7 +36,7 @@ fn a_name_is_taken_from_the_file_that_defines_it_however_it_is_called() {
     for b in [
         "pub fn b() -> Option<crate::a::A> { None }\npub struct B;\n",
         "pub fn b() { assert!(size_of::<crate::A>() > 0) }\npub struct B;\n",
-        "pub fn b() { use crate::*; drop(None::<A>) }\npub struct B;\n",
+        "pub fn b() { use crate::{a::A}; drop(None::<A>) }\npub struct B;\n",
         "use super::*;\npub struct B(Box<A>);\n",
     ] {
         let found = planted(&[LIB, a, ("b.rs", b)]);

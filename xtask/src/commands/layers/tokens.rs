@@ -43,10 +43,9 @@ pub fn content(tokens: TokenStream) -> syn::Result<Content> {
         let next = tokens.get(at + 1).and_then(ident);
         match (word.as_str(), next) {
             // `use<'a>` in a bound is no import.
-            ("use", _) if tokens.get(at + 1).and_then(punct) != Some('<') => {
+            ("use", _) if imports(&tokens[at..]) => {
                 let length = end_of_item(&tokens[at..]);
-                let tree = tokens[at + 1..at + length - 1].iter().cloned().collect();
-                content.import(&syn::parse2(tree)?, &[], public);
+                content.import(&tree(&tokens[at..at + length])?, &[], public);
                 at += length;
             }
             ("mod", Some(name)) => {
@@ -117,6 +116,16 @@ fn mention(tokens: &[TokenTree], at: usize, paths: &mut BTreeSet<Vec<String>>) -
             }
             1
         }
+        // Inside a function, where it may be in braces: all that it names.
+        TokenTree::Ident(word) if word == "use" && imports(&tokens[at..]) => {
+            let length = end_of_item(&tokens[at..]);
+            let mut own = Content::default();
+            if let Ok(tree) = tree(&tokens[at..at + length]) {
+                own.import(&tree, &[], false);
+            }
+            paths.extend(own.imports.into_iter().map(|import| import.path));
+            length
+        }
         TokenTree::Ident(first) => {
             let mut path = vec![first.to_string()];
             let mut end = at + 1;
@@ -154,11 +163,25 @@ fn test_only(tokens: &[TokenTree]) -> bool {
     punct(hash) == Some('#') && attribute.stream().to_string().replace(' ', "") == "cfg(test)"
 }
 
+/// Whether an import begins here; `use<'a>` in a bound is none.
+fn imports(tokens: &[TokenTree]) -> bool {
+    let [word, next, ..] = tokens else {
+        return false;
+    };
+    ident(word).is_some_and(|word| word == "use") && punct(next) != Some('<')
+}
+
+/// What an import names, from `use` to its semicolon.
+fn tree(tokens: &[TokenTree]) -> syn::Result<UseTree> {
+    let named = tokens.iter().skip(1).take(tokens.len().saturating_sub(2));
+    syn::parse2(named.cloned().collect())
+}
+
 /// How many tokens up to the end of the item that begins here: a semicolon, or the braces of a body.
 fn end_of_item(tokens: &[TokenTree]) -> usize {
-    let imports = ident(&tokens[0]).is_some_and(|word| word == "use");
+    let is_import = imports(tokens);
     let ends = |token: &TokenTree| match token {
-        TokenTree::Group(group) => !imports && group.delimiter() == Delimiter::Brace,
+        TokenTree::Group(group) => !is_import && group.delimiter() == Delimiter::Brace,
         token => punct(token) == Some(';'),
     };
     let end = tokens.iter().position(ends);
