@@ -36,7 +36,7 @@ pub(super) fn replaceable(page: &Path, seed: u64, seed_of: fn(&str) -> Option<u6
 /// Outcomes on disk: one file a case, with what they were made by.
 pub(super) struct Kept {
     pub(super) folder: PathBuf,
-    made_by: String,
+    pub(super) made_by: String,
 }
 
 /// What a file of a case holds.
