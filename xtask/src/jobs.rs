@@ -1,7 +1,8 @@
 //! The jobs of this program: those of users, and the matrix.
 
 use clap::Subcommand;
-use feed_axis::jobs::{JobOptions, Jobs, UserJob};
+use feed_axis::commands::UserJob;
+use feed_axis::jobs::{JobOptions, Jobs};
 
 use crate::commands::discover_matrix;
 

@@ -52,7 +52,7 @@ enum Command {
     ContourTable(contour::Options),
     /// Try damaged inputs and disturbed runs, and check how they end
     Torture(torture::Options),
-    /// Check that every crate depends strictly downward
+    /// Check that every crate depends strictly downward, and that no files of one take from one another in a circle
     Layers,
     /// Check that no two crates use one name for different public types
     Names,

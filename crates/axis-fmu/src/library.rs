@@ -1,13 +1,8 @@
 //! Libraries of units, told apart by the headers of their files.
 
-use crate::package::PackageError;
+use crate::library_mark::LIBRARY_MARK;
+use crate::package_error::PackageError;
 use crate::version::FmiVersion;
-
-/// What the library of this version holds in its data, and another one does not.
-pub const LIBRARY_MARK: &str = concat!(
-    "library of feed-axis units, version ",
-    env!("CARGO_PKG_VERSION")
-);
 
 /// A library of units, for one operating system and one processor.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use crate::read::{open, whole};
+use crate::by_extension::whole;
+use crate::read::open;
 use crate::read_error::{ReadError, ReadProblem};
 use crate::table::Holes;
 

@@ -5,9 +5,9 @@ use csv::{Position, StringRecord};
 use crate::csv_text::Text;
 use crate::error::CsvProblem;
 use crate::read_error::{Place, ReadProblem};
-use crate::source_unit::is_unit;
 use crate::table::{Head, Holes, Note, Table};
 use crate::text_dialect::Dialect;
+use crate::unit_table::is_unit;
 
 pub(crate) struct CsvTable<'a> {
     dialect: Dialect<'a>,

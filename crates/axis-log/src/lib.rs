@@ -95,6 +95,7 @@
 //! [`quality::cross_check`] proposes another and changes nothing.
 #![forbid(unsafe_code)]
 
+mod by_extension;
 mod channel;
 mod columns;
 mod csv_in;
@@ -106,6 +107,7 @@ mod import;
 pub mod intake;
 mod log;
 mod mapping;
+mod mapping_error;
 #[cfg(feature = "mat")]
 mod mat_element;
 #[cfg(feature = "mat")]
@@ -133,6 +135,7 @@ mod text_dialect;
 #[cfg(feature = "parquet")]
 mod thrift;
 mod unit;
+mod unit_table;
 mod write;
 
 pub use channel::Channel;
@@ -141,7 +144,8 @@ pub use csv_in::{read_csv, read_csv_from};
 pub use error::{CsvError, CsvProblem, LogError};
 pub use import::{AxisProposal, MappingProposal, ProposedColumn, propose};
 pub use log::{Log, TIME_CHANNEL};
-pub use mapping::{ColumnMap, ColumnUnit, Mapping, MappingError};
+pub use mapping::{ColumnMap, ColumnUnit, Mapping};
+pub use mapping_error::MappingError;
 pub use plus_minus::{PlusMinus, fixed, never_zero};
 pub use read::read_log;
 pub use read_error::{Place, ReadError, ReadProblem};

@@ -2,15 +2,11 @@
 
 use std::path::Path;
 
+use crate::by_extension::{by_extension, whole};
 use crate::channel::Channel;
-use crate::csv_table::CsvTable;
 use crate::import::stated_unit;
 use crate::log::{Log, TIME_CHANNEL};
 use crate::mapping::{ColumnMap, Mapping};
-#[cfg(feature = "mat")]
-use crate::mat_table::MatTable;
-#[cfg(feature = "parquet")]
-use crate::parquet_table::ParquetTable;
 use crate::read_error::{ReadError, ReadProblem};
 use crate::select::{Pick, other_unit, select};
 use crate::table::{Head, Holes, Note, Table};
@@ -120,42 +116,6 @@ fn is_of_name(problem: &ReadProblem) -> bool {
 /// The file as a table: of another program by its content, of the others by its extension.
 pub(crate) fn open<'a>(path: &Path, bytes: &'a [u8]) -> Result<Box<dyn Table + 'a>, ReadProblem> {
     crate::import::table(bytes).unwrap_or_else(|| by_extension(path, bytes))
-}
-
-pub(crate) fn by_extension<'a>(
-    path: &Path,
-    bytes: &'a [u8],
-) -> Result<Box<dyn Table + 'a>, ReadProblem> {
-    let found = path.extension().unwrap_or_default().to_string_lossy();
-    match found.to_ascii_lowercase().as_str() {
-        "csv" | "tsv" | "txt" | "dat" | "asc" => Ok(Box::new(CsvTable::open(bytes)?)),
-        #[cfg(feature = "parquet")]
-        "parquet" => Ok(Box::new(ParquetTable::open(bytes.to_vec())?)),
-        #[cfg(not(feature = "parquet"))]
-        "parquet" => Err(ReadProblem::LeftOut {
-            format: "Parquet",
-            feature: "parquet",
-        }),
-        #[cfg(feature = "mat")]
-        "mat" => Ok(Box::new(MatTable::open(bytes)?)),
-        #[cfg(not(feature = "mat"))]
-        "mat" => Err(ReadProblem::LeftOut {
-            format: "MAT",
-            feature: "mat",
-        }),
-        _ => Err(ReadProblem::Extension {
-            found: found.into_owned(),
-        }),
-    }
-}
-
-/// What is in a file, a text as UTF-8.
-pub(crate) fn whole(path: &Path) -> Result<Vec<u8>, ReadProblem> {
-    let bytes = std::fs::read(path).map_err(|source| ReadProblem::Io {
-        action: "read it",
-        source,
-    })?;
-    Ok(crate::encoding::plain(bytes)?)
 }
 
 fn channels(

@@ -5,7 +5,7 @@ use std::fmt;
 use thiserror::Error;
 
 use crate::error::{CsvProblem, LogError, clip, extension, quoted};
-use crate::mapping::MappingError;
+use crate::mapping_error::MappingError;
 
 /// A log file that cannot be read: which one, and why.
 #[derive(Debug, Error)]

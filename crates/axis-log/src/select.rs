@@ -4,9 +4,9 @@ use crate::import::stated_unit;
 use crate::log::TIME_CHANNEL;
 use crate::mapping::{ColumnMap, Mapping};
 use crate::read_error::ReadProblem;
-use crate::source_unit::{known, size_of};
 use crate::table::{Head, OtherUnit, Table};
 use crate::unit::unit_of;
+use crate::unit_table::{known, size_of};
 
 /// A column that becomes a channel.
 pub(crate) struct Pick {

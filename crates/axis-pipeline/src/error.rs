@@ -2,7 +2,8 @@
 
 use thiserror::Error;
 
-use crate::strategies::{CYCLE_BY_CYCLE, Need};
+use crate::cycle_names::CYCLE_BY_CYCLE;
+use crate::need::Need;
 
 impl PipelineError {
     /// Whether a strategy cannot be made for this axis at all: another one may be.

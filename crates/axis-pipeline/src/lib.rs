@@ -15,6 +15,7 @@
 
 pub mod compensation;
 pub mod corrections;
+mod cycle_names;
 pub mod drive_terms;
 mod error;
 mod figures;
@@ -24,6 +25,7 @@ pub mod learning;
 mod linear_map;
 pub mod measured;
 pub mod moves;
+mod need;
 pub mod residuals;
 pub mod robustness;
 pub mod sample_file;

@@ -5,9 +5,9 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use crate::error::ReportError;
 use crate::figure::{Figure, Series, Style};
 use crate::interactive::{self, Detail};
+use crate::number::{fixed, scientific};
 use crate::page::{Block, KeyValues, Notice, Page};
 use crate::plot;
-use crate::scale::superscript;
 use crate::table::{Cell, Mark, Table};
 use crate::unit::engineering;
 
@@ -332,33 +332,5 @@ fn content(cell: &Cell) -> Markup {
             digits,
             ..
         } => html! { (engineering(*value, unit, *digits)) },
-    }
-}
-
-/// A number of so many decimals with a typographic minus, and without one on a rounded zero.
-///
-/// ```
-/// assert_eq!(axis_report::fixed(-12.34, 1), "\u{2212}12.3");
-/// assert_eq!(axis_report::fixed(-0.0004, 3), "0.000");
-/// ```
-pub fn fixed(value: f64, digits: usize) -> String {
-    let text = format!("{value:.digits$}");
-    match text.strip_prefix('-') {
-        Some(rest) if rest.bytes().any(|b| (b'1'..=b'9').contains(&b)) => format!("\u{2212}{rest}"),
-        Some(zero) => zero.to_owned(),
-        None => text,
-    }
-}
-
-/// A number as mantissa and power of ten.
-pub(crate) fn scientific(value: f64, digits: usize) -> String {
-    let text = format!("{value:.digits$e}");
-    // Rust always writes the exponent; were it absent, the text stands as it is.
-    match text.split_once('e').map(|(m, e)| (m, e.parse::<i32>())) {
-        Some((mantissa, Ok(0))) => mantissa.replace('-', "\u{2212}"),
-        Some((mantissa, Ok(e))) => {
-            format!("{}·10{}", mantissa.replace('-', "\u{2212}"), superscript(e))
-        }
-        _ => text,
     }
 }

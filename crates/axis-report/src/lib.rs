@@ -56,6 +56,7 @@ mod error;
 mod figure;
 mod html;
 mod interactive;
+mod number;
 mod page;
 mod plot;
 mod scale;
@@ -66,7 +67,8 @@ mod write;
 
 pub use error::{PageWriteError, PlotAxis, ReportError};
 pub use figure::{Figure, Scale, Series, Style};
-pub use html::{fixed, render};
+pub use html::render;
+pub use number::fixed;
 pub use page::{Block, KeyValues, Notice, Page, Section};
 pub use table::{Cell, ColumnGroup, Mark, Table};
 pub use unit::engineering;

@@ -1,6 +1,7 @@
 //! Range, ticks and tick labels of an axis.
 
 use crate::figure::Scale;
+use crate::number::superscript;
 use crate::unit::{Unit, scaled};
 
 /// An axis fitted to its data. What is drawn is `value · 10^-exponent`: drawing
@@ -254,22 +255,6 @@ fn snap_up(value: f64, whole_decades: bool) -> f64 {
         .map(|m| m * base)
         .find(|v| *v >= value * (1.0 - 1e-9))
         .unwrap_or(10.0 * base)
-}
-
-/// An integer in Unicode superscripts.
-pub(crate) fn superscript(value: i32) -> String {
-    value
-        .to_string()
-        .chars()
-        .map(|c| match c {
-            '-' => '⁻',
-            '1' => '¹',
-            '2' => '²',
-            '3' => '³',
-            '0' | '4'..='9' => char::from_u32(0x2070 + c as u32 - '0' as u32).unwrap_or(c),
-            other => other,
-        })
-        .collect()
 }
 
 #[cfg(test)]

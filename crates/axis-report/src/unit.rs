@@ -1,5 +1,7 @@
 //! Units and SI prefixes: the one place where a number gets its unit for people.
 
+use crate::number::{fixed, scientific};
+
 /// Units that take a prefix, on their first symbol, with the least and the greatest power of ten
 /// that people read with it. Of products such as N·s/m and of kg none is common; they stay as
 /// they are.
@@ -136,9 +138,9 @@ fn significant(value: f64, digits: usize) -> String {
     };
     if (-3..6).contains(&power) {
         let places = (digits as i32 - 1 - power).max(0) as usize;
-        return crate::html::fixed(value, places);
+        return fixed(value, places);
     }
-    crate::html::scientific(value, digits - 1)
+    scientific(value, digits - 1)
 }
 
 /// To so many significant digits.

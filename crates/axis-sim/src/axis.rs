@@ -9,14 +9,15 @@ use trajectories::{Limits, Program, ProgramUnit, SCurve, TrajectoryError};
 use crate::actuator::{Actuator, Surroundings};
 use crate::control::{Control, absent};
 use crate::cycle::Cycle;
-use crate::effects::{self, ActiveEffect, Hooks, TableState};
+use crate::data_sheets::DataSheets;
+use crate::effects::{ActiveEffect, TableState};
 use crate::error::SetupError;
 use crate::friction::Friction;
 use crate::load::Load;
 use crate::mechanism::{Freedom, Mechanism, SolutionMethod};
 use crate::part::{Known, Part, PartError, Role, Values};
-use crate::rating::DataSheets;
 use crate::sensor::Sensor;
+use crate::value_range::ValueRange;
 
 /// Tracking error at which a run is given up where the axis file does not say, m.
 pub const FOLLOWING_ERROR_LIMIT: f64 = 0.02;
@@ -129,22 +130,6 @@ pub struct Stroke {
     pub start: f64,
 }
 
-/// A closed interval, SI units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ValueRange {
-    /// Lower end.
-    pub least: f64,
-    /// Upper end.
-    pub most: f64,
-}
-
-impl ValueRange {
-    /// Whether `value` lies inside.
-    pub fn contains(&self, value: f64) -> bool {
-        (self.least..=self.most).contains(&value)
-    }
-}
-
 /// The design space of the one-cycle samples: Table 5 of the paper.
 #[derive(Clone, Copy, Debug)]
 pub struct SampleRanges {
@@ -210,13 +195,6 @@ impl Tolerances {
 }
 
 impl Axis {
-    /// The axis with its effects' changes made, and their hooks.
-    pub(crate) fn with_effects(&self) -> Result<(Self, Hooks), SetupError> {
-        let mut axis = self.clone();
-        let hooks = effects::install(&self.effects, &mut axis)?;
-        Ok((axis, hooks))
-    }
-
     /// How the load moves.
     pub fn freedom(&self) -> Freedom {
         self.mechanism.freedom()

@@ -6,9 +6,9 @@ use axis_log::{Log, LogError};
 
 use crate::actuator::Effort;
 use crate::axis::Axis;
-use crate::balance::torque_channels;
 use crate::cycle::Cycle;
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
+use crate::torque_channel::torque_channels;
 
 /// A channel of a log.
 #[derive(Clone, Copy, Debug)]

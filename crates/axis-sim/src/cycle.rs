@@ -5,7 +5,7 @@ use foc_pmsm::Dq;
 use thiserror::Error;
 use trajectories::Setpoint;
 
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 use crate::{MOST_STEPS, SixDigits};
 
 /// What one control cycle leaves behind, at its start `t_k`.

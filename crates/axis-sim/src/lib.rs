@@ -94,13 +94,16 @@ pub mod actuator;
 mod axis;
 mod axis_file;
 pub mod balance;
+mod balance_error;
 mod channels;
 mod closed_loop;
 pub mod control;
 mod cycle;
+mod data_sheets;
 mod effect_forces;
 pub mod effects;
 mod error;
+mod freedom;
 pub mod friction;
 mod late_clock;
 pub mod load;
@@ -114,12 +117,15 @@ mod recorder;
 mod replay;
 pub mod sensor;
 mod six_digits;
+mod start;
 pub mod thermal;
+mod torque_channel;
+mod value_range;
 mod work;
 
 pub use axis::{
     Axis, BalanceSettings, Experiment, FOLLOWING_ERROR_LIMIT, LoadSensor, MoveSpec, SampleRanges,
-    Sensors, Simulation, Stroke, Tolerances, ValueRange,
+    Sensors, Simulation, Stroke, Tolerances,
 };
 pub use axis_file::{AxisFileError, Registry, TABLES_WITHOUT_PARTS, toml_message};
 pub use balance::{
@@ -135,10 +141,11 @@ pub use effect_forces::EffectForces;
 pub use error::SetupError;
 pub use one_cycle::{CycleInput, OneCycle};
 pub use plan_model::{PlanModelError, PositionErrors};
-pub use plant::Start;
 pub use recorder::{CsvRecorder, FlowRecorder, Recorder};
 pub use replay::{LoggedReference, Probe, Replay, ReplayError, SampledCurve, Stored, Trace};
 pub use six_digits::SixDigits;
+pub use start::Start;
+pub use value_range::ValueRange;
 pub use work::{FREQUENCIES, MOST_STEPS};
 
 /// The README's example, run as a test.

@@ -9,8 +9,8 @@ use crate::axis::Axis;
 use crate::channels::{LogChannel, channels};
 use crate::cycle::{Cycle, RunStopped};
 use crate::error::SetupError;
+use crate::freedom::Freedom;
 use crate::late_clock::{LateClocks, Lateness};
-use crate::mechanism::Freedom;
 
 /// Collects the cycles of a run, in memory.
 #[derive(Clone, Debug)]

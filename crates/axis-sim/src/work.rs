@@ -2,8 +2,6 @@
 
 use feed_dynamics::DriveError;
 
-use crate::axis::Axis;
-
 /// Least and greatest control frequency that an axis file takes, Hz.
 pub const FREQUENCIES: [f64; 2] = [100.0, 1e6];
 
@@ -35,9 +33,9 @@ pub(crate) fn check_period(period: f64) -> Result<(), DriveError> {
     })
 }
 
-/// Number of equal steps, none longer than asked, that make up a control period.
-pub(crate) fn substeps(axis: &Axis) -> u32 {
-    let steps = substeps_of(axis.period, axis.simulation.step);
+/// Number of equal steps, none longer than asked, that make up a period; at most [`MOST_SUBSTEPS`].
+pub(crate) fn substeps(period: f64, step: f64) -> u32 {
+    let steps = substeps_of(period, step);
     steps.min(f64::from(MOST_SUBSTEPS)) as u32
 }
 

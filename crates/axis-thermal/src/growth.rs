@@ -16,8 +16,9 @@
 //! A drive that measures at the motor holds the table at x + (1 or 3), one that measures by the
 //! scale at x + (4). What is clamped to the bed at x moves by (5).
 
-use crate::model::{BODIES, HeatNode, ThermalModel, ThermalState};
+use crate::model::ThermalModel;
 use crate::screw::{ScrewEnds, ThermalScrew};
+use crate::state::{BODIES, HeatNode, ThermalState};
 
 /// Growth at a position, m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

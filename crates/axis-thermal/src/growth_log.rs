@@ -3,8 +3,9 @@
 use crate::duty::Duty;
 use crate::error::ThermalError;
 use crate::growth::Growth;
-use crate::model::{ThermalModel, ThermalState};
+use crate::model::ThermalModel;
 use crate::run::ThermalAccuracy;
+use crate::state::ThermalState;
 use crate::work::AxisAtWork;
 
 /// What a reading of growth shows.

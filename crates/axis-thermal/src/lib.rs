@@ -75,6 +75,7 @@ mod parameters;
 mod predict;
 mod run;
 mod screw;
+mod state;
 mod unknown;
 mod work;
 
@@ -87,7 +88,7 @@ pub use growth_log::{
     GrowthZeros,
 };
 pub use identify::{FittedGrowth, GrowthFit};
-pub use model::{HeatNode, ThermalModel, ThermalState};
+pub use model::ThermalModel;
 pub use parameters::{
     Expansions, FrictionShares, HeatShares, ThermalBodies, ThermalBody, ThermalLinks,
     ThermalParameters, WindingLoss,
@@ -95,6 +96,7 @@ pub use parameters::{
 pub use predict::GrowthPredictor;
 pub use run::{ThermalAccuracy, ThermalWork};
 pub use screw::{ScrewAir, ScrewEnds, ThermalScrew};
+pub use state::{HeatNode, ThermalState};
 pub use unknown::ThermalUnknown;
 pub use work::{AxisAtWork, HeatLosses};
 

@@ -4,8 +4,9 @@ use crate::duty::{Duty, DutySample};
 use crate::error::{ThermalError, check};
 use crate::growth::Growth;
 use crate::growth_log::GrowthOf;
-use crate::model::{ThermalModel, ThermalState};
+use crate::model::ThermalModel;
 use crate::run::ThermalAccuracy;
+use crate::state::ThermalState;
 
 /// Spread of positions below which a probing tells no slope, m.
 const NARROW: f64 = 1e-3;

@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use crate::error::{ThermalError, check};
-use crate::model::ThermalState;
+use crate::state::ThermalState;
 use crate::work::AxisAtWork;
 
 /// Greatest temperature that is still followed, °C: beyond it, losses grow faster than they are

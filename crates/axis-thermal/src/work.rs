@@ -3,9 +3,9 @@
 use nalgebra::DVector;
 
 use crate::duty::Duty;
-use crate::model::{BODIES, HeatNode, ThermalState};
 use crate::network::Network;
 use crate::parameters::{FrictionShares, HeatShares, ThermalParameters};
+use crate::state::{BODIES, HeatNode, ThermalState};
 
 /// Where the heat of an axis arises, W.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

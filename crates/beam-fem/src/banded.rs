@@ -3,7 +3,6 @@
 use nalgebra::DMatrix;
 
 use crate::BeamError;
-use crate::beam::free_dofs;
 use crate::element::Entry;
 use crate::error::check_size;
 
@@ -225,4 +224,17 @@ impl BandedMatrices {
             stiffness[place] += e.stiffness;
         }
     }
+}
+
+/// All of 0..order that is not in `fixed`, ascending.
+pub(crate) fn free_dofs(order: usize, fixed: &[usize]) -> Result<Vec<usize>, BeamError> {
+    let mut held = vec![false; order];
+    for &index in fixed {
+        *held.get_mut(index).ok_or(BeamError::Index {
+            field: "fixed",
+            index,
+            bound: order,
+        })? = true;
+    }
+    Ok((0..order).filter(|&i| !held[i]).collect())
 }

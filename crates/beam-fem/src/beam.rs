@@ -2,45 +2,11 @@
 
 use nalgebra::DMatrix;
 
+use crate::banded::free_dofs;
 use crate::element::Coefficients;
 use crate::error::check_size;
 use crate::modes::check_square;
 use crate::{BandedMatrices, BeamError, CrossSection, Material, Mesh};
-
-/// The six degrees of freedom of a node, in the paper's order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dof {
-    /// Axial displacement u, m.
-    U = 0,
-    /// Deflection v along y, m.
-    V = 1,
-    /// Deflection w along z, m.
-    W = 2,
-    /// Twist θx, rad: the paper's RX direction.
-    ThetaX = 3,
-    /// Rotation θy, rad.
-    ThetaY = 4,
-    /// Rotation θz, rad.
-    ThetaZ = 5,
-}
-
-impl Dof {
-    /// All six, in order.
-    pub const ALL: [Dof; 6] = [
-        Dof::U,
-        Dof::V,
-        Dof::W,
-        Dof::ThetaX,
-        Dof::ThetaY,
-        Dof::ThetaZ,
-    ];
-
-    /// Row of this degree of freedom of `node` in the assembled matrices; a
-    /// row that no matrix has for a node that no mesh has.
-    pub fn at(self, node: usize) -> usize {
-        node.saturating_mul(6).saturating_add(self as usize)
-    }
-}
 
 /// A straight beam of one section and material on a mesh. Any combination of
 /// checked parts is valid.
@@ -157,17 +123,4 @@ impl BeamMatrices {
             stiffness: pick(&self.stiffness),
         })
     }
-}
-
-/// All of 0..order that is not in `fixed`, ascending.
-pub(crate) fn free_dofs(order: usize, fixed: &[usize]) -> Result<Vec<usize>, BeamError> {
-    let mut held = vec![false; order];
-    for &index in fixed {
-        *held.get_mut(index).ok_or(BeamError::Index {
-            field: "fixed",
-            index,
-            bound: order,
-        })? = true;
-    }
-    Ok((0..order).filter(|&i| !held[i]).collect())
 }

@@ -42,7 +42,7 @@ pub enum BeamError {
         "nodes {} and {index}, at {before} m and {value} m, are {} m apart: neighbours must be at least {least} m apart ({} of the beam's length); leave one of them out",
         index - 1,
         value - before,
-        crate::Mesh::LEAST_SPACING
+        crate::spacing::LEAST_SPACING
     )]
     Spacing {
         /// Index of the second node of the first such pair.

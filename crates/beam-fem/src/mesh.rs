@@ -2,6 +2,7 @@
 
 use crate::BeamError;
 use crate::error::positive;
+use crate::spacing::LEAST_SPACING;
 
 /// Nodes along the beam axis, ascending from 0 at the driven end.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +20,7 @@ impl Mesh {
     /// between is 10¹⁰ times as stiff as the beam, of whose stiffness a sum with it
     /// keeps six digits. No screw has elements as short; nodes that are closer are
     /// one node, computed twice.
-    pub const LEAST_SPACING: f64 = 1e-10;
+    pub const LEAST_SPACING: f64 = LEAST_SPACING;
 
     /// `elements` equal elements over `length` metres.
     ///

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use crate::journal::Journal;
 use crate::row::{decode, encode};
 use crate::shard_file::{self, Label, ShardFile};
+use crate::shard_paths::paths;
 use crate::{CampaignError, Failure, Job, Merged, Row, Shard, instruction_set, try_lock};
 
 /// Rows of a row group, and bytes after which one ends before that.
@@ -59,12 +60,6 @@ pub fn forget_whole(job: &dyn Job) -> Result<(), CampaignError> {
     let _ = std::fs::remove_dir(job.folder().join("shards"));
     let _ = std::fs::remove_dir(job.folder());
     Ok(())
-}
-
-/// The files of a shard: itself, before it is whole, its journal.
-pub(crate) fn paths(job: &dyn Job, shard: Shard) -> [PathBuf; 3] {
-    let files = shard.files(job.name());
-    files.map(|file| job.folder().join("shards").join(file))
 }
 
 /// Makes a shard of a job on the threads of the current rayon pool, and answers its

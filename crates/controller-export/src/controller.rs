@@ -4,8 +4,9 @@ use axis_pipeline::strategies::{CYCLE_BY_CYCLE, CycleLaw, PositionLaw, Predictor
 use axis_sim::Axis;
 use compensator::{Guard, GuardLimits, Kinematics};
 
+use crate::ExportError;
 use crate::law::{ExportedLaw, NetworkLaw, PlanLaw, Position};
-use crate::{ExportError, c};
+use crate::name::check_name;
 
 /// Names of the strategies that can be exported.
 pub const EXPORTED: &[&str] = CYCLE_BY_CYCLE;
@@ -86,7 +87,7 @@ impl ExportedController {
     /// # Errors
     /// [`ExportError::Name`] for one that cannot stand in C.
     pub fn named(self, name: &str) -> Result<Self, ExportError> {
-        c::check_name(name)?;
+        check_name(name)?;
         Ok(Self {
             name: name.to_owned(),
             ..self

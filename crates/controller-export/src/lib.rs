@@ -27,6 +27,7 @@ mod controller;
 mod error;
 mod law;
 pub mod linuxcnc;
+mod name;
 pub mod onnx;
 
 pub use controller::{EXPORTED, ExportedController, Units, exportable};

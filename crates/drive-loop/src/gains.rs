@@ -9,7 +9,8 @@ use crate::loops::{CornerLoop, Sensitivities};
 use crate::plant::Corner;
 use crate::search::least;
 use crate::set::AxisLoops;
-use crate::tune::{LoopFigures, TuneSettings, TunedGains};
+use crate::tune_settings::TuneSettings;
+use crate::tuned_gains::{LoopFigures, TunedGains};
 use crate::turn::radius;
 
 /// Widths of the symmetric optimum from which the search starts.

@@ -10,8 +10,9 @@ use crate::error::LoopError;
 use crate::gains::Limits;
 use crate::law::LoopGains;
 use crate::plant::LoopModel;
+use crate::quick_current::with_quick_current;
 use crate::set::{AxisLoops, LoopSet};
-use crate::tune::{TuneSettings, with_quick_current};
+use crate::tune_settings::TuneSettings;
 
 /// Share by which a change must improve the loop to be told.
 const TOLD: f64 = 0.02;

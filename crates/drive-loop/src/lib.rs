@@ -45,12 +45,17 @@ mod law;
 mod loops;
 mod margins;
 mod measured;
+mod measured_plant;
 mod moves;
 mod plant;
+mod quick_current;
 mod report;
 mod search;
 mod set;
 mod tune;
+mod tune_settings;
+mod tuned_gains;
+mod tuning;
 mod turn;
 
 pub use analysis::{LoopAnalysis, LoopCurves, WorstMargins};
@@ -65,6 +70,7 @@ pub use measured::{
 pub use moves::{MoveFigures, moves};
 pub use plant::Corner;
 pub use set::{LoopSet, MASSES};
-pub use tune::{
-    Limiting, LoopFigures, MoveCheck, TuneSettings, Tuned, TunedGains, Tuning, with_acceleration,
-};
+pub use tune::{Tuned, with_acceleration};
+pub use tune_settings::TuneSettings;
+pub use tuned_gains::{LoopFigures, TunedGains};
+pub use tuning::{Limiting, MoveCheck, Tuning};

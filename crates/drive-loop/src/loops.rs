@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use compensator::{Mode, SampledDrive};
 
 use crate::law::{LoopAt, LoopGains};
-use crate::measured::MeasuredPlant;
+use crate::measured_plant::MeasuredPlant;
 use crate::plant::{Corner, LoopModel, Number, PlantAt, PlantResponse};
 
 /// Lowest frequency, of half the sampling rate: where a double integrator is still far above the

@@ -9,7 +9,8 @@ use crate::helps::helps;
 use crate::law::LoopGains;
 use crate::margins::CutMargins;
 use crate::set::AxisLoops;
-use crate::tune::{Found, Limiting, MoveCheck, TuneSettings, Tuning};
+use crate::tune_settings::TuneSettings;
+use crate::tuning::{Limiting, MoveCheck, Tuning};
 
 /// Of an axis as its file says, and of what was found for it.
 pub(crate) fn report(
@@ -160,4 +161,13 @@ fn limiting(loops: &AxisLoops, gains: &LoopGains, limits: &Limits) -> Vec<Limiti
     }
     all.sort_by(|a, b| (b.value / b.limit).total_cmp(&(a.value / a.limit)));
     all
+}
+
+/// Loops with the best gains that were found for them.
+pub(crate) struct Found {
+    pub axis: Axis,
+    pub loops: AxisLoops,
+    pub gains: LoopGains,
+    pub notch: Option<f64>,
+    pub evaluations: usize,
 }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::error::LoopError;
 use crate::law::LoopGains;
 use crate::loops::CornerLoop;
-use crate::measured::MeasuredPlant;
+use crate::measured_plant::MeasuredPlant;
 use crate::plant::{Corner, LoopModel, modes_at};
 
 /// Ranges over which margins are computed and must hold.

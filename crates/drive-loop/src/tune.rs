@@ -12,17 +12,16 @@
 
 use axis_sim::control::CascadeGains;
 use axis_sim::{Axis, SetupError};
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use crate::error::LoopError;
 use crate::gains::Limits;
-use crate::helps::Help;
 use crate::law::LoopGains;
 use crate::moves::{MoveFigures, moves};
-use crate::plant::Corner;
-use crate::report::report;
+use crate::quick_current::with_quick_current;
+use crate::report::{Found, report};
 use crate::set::{AxisLoops, LoopSet};
+use crate::tune_settings::TuneSettings;
+use crate::tuning::{MoveCheck, Tuning};
 
 /// Shares of the limits' distance to 1 to which they are lowered where the simulated axis rings or
 /// saturates.
@@ -33,170 +32,6 @@ const NOTCH: [f64; 2] = [0.3, 0.5];
 const WORTH: f64 = 0.05;
 /// Ringing that counts as none: a thousandth of the greatest command.
 const QUIET: f64 = 1e-3;
-
-/// What is asked of gains.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TuneSettings {
-    /// Maximum sensitivity at either cut, in all corners.
-    pub sensitivity: f64,
-    /// The same with one more cycle of delay.
-    pub sensitivity_late: f64,
-    /// Greatest ripple of the command by the step of the sensor that the speed is derived from, as a
-    /// share of the greatest command (RMS); infinite for none.
-    pub ripple: f64,
-    /// The corners.
-    pub set: LoopSet,
-    /// Whether the acceleration is fed forward.
-    pub acceleration: bool,
-    /// Whether a notch may be set where the file has none.
-    pub notch: bool,
-    /// Whether the current controllers are set to the magnitude optimum first.
-    pub current: bool,
-    /// Whether the limits are lowered until no simulated move rings or saturates more than with the
-    /// gains of the file.
-    pub simulated: bool,
-}
-
-impl Default for TuneSettings {
-    fn default() -> Self {
-        Self {
-            sensitivity: 1.6,
-            sensitivity_late: 2.0,
-            ripple: 0.02,
-            set: LoopSet::default(),
-            acceleration: true,
-            notch: true,
-            current: false,
-            simulated: true,
-        }
-    }
-}
-
-impl TuneSettings {
-    fn check(&self) -> Result<(), LoopError> {
-        let refused = |name, value, valid| Err(LoopError::Setting { name, value, valid });
-        if !(1.1..=10.0).contains(&self.sensitivity) {
-            return refused(
-                "the limit of the sensitivity",
-                self.sensitivity,
-                "from 1.1 to 10",
-            );
-        }
-        if self.sensitivity_late.is_nan() || self.sensitivity_late < self.sensitivity {
-            let valid = "at least the limit without the cycle of delay";
-            return refused(
-                "the limit with one more cycle",
-                self.sensitivity_late,
-                valid,
-            );
-        }
-        if self.ripple.is_nan() || self.ripple <= 0.0 {
-            return refused("the limit of the ripple", self.ripple, "above 0");
-        }
-        Ok(())
-    }
-}
-
-/// Gains in SI, of the motor's and the load's coordinates as the axis file has them.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct TunedGains {
-    /// k_v, 1/s.
-    pub kv_per_s: f64,
-    /// k_p: command (A, N·m, N or V) per speed of the motor (rad/s, m/s).
-    pub speed_proportional: f64,
-    /// T_n = k_p/k_i, s; none without an integral.
-    pub integral_time_s: Option<f64>,
-    /// Command per acceleration of the load; 0 where it is not fed forward.
-    pub acceleration_feedforward: f64,
-    /// Frequency of the notch that was set, Hz; none where it is as the file has it.
-    pub notch_hz: Option<f64>,
-}
-
-/// How good a loop holds the load, and its margins over the set.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct LoopFigures {
-    /// Maximum sensitivity over the set at either cut; none where a corner is unstable.
-    pub sensitivity: Option<f64>,
-    /// The same with one more cycle of delay.
-    pub sensitivity_late: Option<f64>,
-    /// Compliance of the sliding load per frequency, at low ones: 2π r²/(K k_i k_v), m/N per Hz or
-    /// rad/(N·m) per Hz; none without an integral.
-    pub compliance_slope: Option<f64>,
-    /// Geometric mean over the file's mass at all positions, sliding and stuck, of the root mean
-    /// square compliance from 1 to 300 Hz, m/N or rad/(N·m).
-    pub compliance_rms: f64,
-    /// Greatest compliance of the sliding load at the first position.
-    pub compliance_peak: f64,
-    /// Ripple of the command by the sensor's step, a share of the greatest command (RMS).
-    pub ripple: f64,
-    /// Objective: the lower, the better the load is held.
-    pub objective: f64,
-}
-
-/// A constraint, and how near the gains are to it.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct Limiting {
-    /// What it limits: `sensitivity at the command`, ….
-    pub what: String,
-    /// Its value.
-    pub value: f64,
-    /// Its limit.
-    pub limit: f64,
-    /// Where: the corner with the greatest value; none of a constraint that has no corner.
-    pub corner: Option<Corner>,
-    /// Frequency of the peak there, Hz.
-    pub frequency_hz: Option<f64>,
-    /// Number, from 1, of the natural mode within a quarter of that frequency.
-    pub mode: Option<usize>,
-}
-
-/// A move before and after.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct MoveCheck {
-    /// Number of the trajectory, from 1.
-    pub trajectory: usize,
-    /// With the gains of the file.
-    pub file: MoveFigures,
-    /// With the tuned ones.
-    pub tuned: MoveFigures,
-}
-
-/// What `tune` found.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct Tuning {
-    /// Of this form.
-    pub schema: u32,
-    /// Name of the axis.
-    pub axis: String,
-    /// Fingerprint of the file's axis.
-    pub axis_fingerprint: String,
-    /// Version of the program.
-    pub version: String,
-    /// Unit of the load's position: "m" or "rad".
-    pub position_unit: String,
-    /// Limits of the sensitivity that were kept: as asked for, or lower where the simulated axis rang.
-    pub limits: [f64; 2],
-    /// Gains of the file.
-    pub file_gains: TunedGains,
-    /// Gains that were found.
-    pub tuned_gains: TunedGains,
-    /// The file's loops.
-    pub file: LoopFigures,
-    /// The tuned loops.
-    pub tuned: LoopFigures,
-    /// Whether the greatest eigenvalue is below 1 in every corner, loops at their own rates.
-    pub proven_stable: bool,
-    /// Constraints, the nearest first; those within 2 % limit the gains.
-    pub limiting: Vec<Limiting>,
-    /// What would help, the most first: each by tuning again with that change.
-    pub helps: Vec<Help>,
-    /// The file's moves, simulated with the noise of the sensors.
-    pub moves: Vec<MoveCheck>,
-    /// Evaluations of the objective.
-    pub evaluations: usize,
-    /// What else is to be known, in words.
-    pub notes: Vec<String>,
-}
 
 /// A tuned axis.
 #[derive(Clone, Debug)]
@@ -255,15 +90,6 @@ impl Tuning {
             most: Limits::of(settings, LOWERED[LOWERED.len() - 1]).sensitivity[0],
         })
     }
-}
-
-/// Loops with the best gains that were found for them.
-pub(crate) struct Found {
-    pub axis: Axis,
-    pub loops: AxisLoops,
-    pub gains: LoopGains,
-    pub notch: Option<f64>,
-    pub evaluations: usize,
 }
 
 /// The best gains, and with them a notch where that is worth it.
@@ -338,20 +164,6 @@ fn retune(axis: &mut Axis, gains: &CascadeGains) -> Result<(), LoopError> {
     axis.control
         .change(|own| *own = values)
         .map_err(|error| SetupError::from(error).into())
-}
-
-/// Sets the current controllers to the magnitude optimum; whether there are any.
-pub(crate) fn with_quick_current(axis: &mut Axis) -> Result<bool, LoopError> {
-    let values = axis.actuator.values();
-    let Some(values) = axis.actuator.with_magnitude_optimum(values, axis.period) else {
-        return Ok(false);
-    };
-    let changed = axis.actuator.change(|own| *own = values);
-    changed.map_err(SetupError::from)?;
-    axis.actuator
-        .runs_at(axis.period)
-        .map_err(SetupError::from)?;
-    Ok(true)
 }
 
 /// The axis with these gains.

@@ -1,27 +1,13 @@
 //! What all functions have in common: status, messages, no panic across the border.
 
 use std::any::Any;
-use std::ffi::c_void;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use axis_fmu::UnitError;
 use safer_ffi::prelude::*;
 
 use crate::instance::Instance;
-
-/// An address that is only passed on, or never looked at.
-pub type Address = *mut c_void;
-
-/// `fmi3Status` and `fmi2Status`, whose numbers are the same.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
-    /// Done.
-    Ok = 0,
-    /// What is asked for is not known (in FMI 2.0 alone).
-    Discard = 2,
-    /// Refused or given up; the logger was told.
-    Error = 3,
-}
+use crate::status::Status;
 
 /// Does `work` on the instance. What goes wrong is told to its logger, a panic too, after which
 /// the instance is of no more use.

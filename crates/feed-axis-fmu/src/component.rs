@@ -3,9 +3,9 @@
 use safer_ffi::prelude::*;
 
 use crate::access::{Access, Lent};
-use crate::call::{Address, Status};
 use crate::instance::Instance;
 use crate::log::Logger;
+use crate::status::{Address, Status};
 
 /// An instance as it is made.
 #[derive_ReprC]

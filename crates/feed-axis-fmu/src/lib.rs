@@ -25,4 +25,5 @@ mod instance;
 mod log;
 mod resource_path;
 mod state_bytes;
+mod status;
 mod values;

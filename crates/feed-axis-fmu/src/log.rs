@@ -1,8 +1,8 @@
 //! Where messages go: the environment's logger, of either version.
 
-use std::ffi::{CStr, CString};
+use std::ffi::CString;
 
-use crate::call::{Address, Status};
+use crate::status::{Address, Status};
 
 /// `fmi3LogMessageCallback`: environment, status, category, message.
 pub type LogMessage = extern "C" fn(Address, i32, *const u8, *const u8);
@@ -72,16 +72,6 @@ impl Log {
 /// A text of C. One with a NUL cannot be given to C: it ends there.
 pub fn c_text(text: &str) -> CString {
     CString::new(text.split('\0').next().unwrap_or_default()).unwrap_or_default()
-}
-
-impl Status {
-    /// The category of its messages, which the description declares.
-    pub fn category(self) -> &'static CStr {
-        match self {
-            Self::Discard => c"logStatusDiscard",
-            Self::Ok | Self::Error => c"logStatusError",
-        }
-    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use axis_pipeline::training::test;
+use axis_pipeline::sampling::ranges;
+use axis_pipeline::training::{INITIAL_DAMPING, NetworkPlan, test, train};
 use cfnn::artifact::{network_from_bytes, network_to_bytes};
 use cfnn::train::{Dataset, Trainer, TrainingSettings};
 use cfnn::{Network, Shape};
@@ -13,6 +14,7 @@ use pyo3::types::{PyBytes, PyTuple, PyType};
 
 use crate::arrays;
 use crate::arrays::{Layers, rows, rows_of};
+use crate::axis::PyAxis;
 use crate::errors::{NetworkError, bytes_of, of_file, raise};
 use crate::long::long;
 use crate::one_cycle::Samples;
@@ -192,5 +194,42 @@ impl PyNetwork {
         let sizes: Vec<String> = sizes.iter().map(ToString::to_string).collect();
         let parameters = self.network.weights().len();
         format!("Network({}, {parameters} parameters)", sizes.join("-"))
+    }
+}
+
+#[pymethods]
+impl PyAxis {
+    /// Trains the one-cycle predictor: what the best linear map of the samples leaves.
+    #[pyo3(signature = (samples, *, hidden = Layers(vec![34, 19, 8]), epochs = 500, seed = 1, threads = 0, progress = None))]
+    #[allow(clippy::too_many_arguments)]
+    fn train(
+        &self,
+        py: Python<'_>,
+        samples: PyRef<'_, Samples>,
+        hidden: Layers,
+        #[pyo3(from_py_with = arrays::epochs)] epochs: usize,
+        #[pyo3(from_py_with = arrays::seed)] seed: u64,
+        #[pyo3(from_py_with = arrays::threads)] threads: usize,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PyNetwork> {
+        let (axis, samples) = (self.axis.clone(), samples.0.clone());
+        long(py, progress, move |hook| {
+            let plan = NetworkPlan {
+                hidden: hidden.0,
+                epochs,
+                initial_damping: INITIAL_DAMPING,
+                seed,
+                threads,
+            };
+            let ranges = ranges(&axis).map_err(raise::<NetworkError>)?;
+            let trained = train(&ranges, &samples, &plan, None, |report, _| {
+                hook.done("train", report.epoch as u64, epochs as u64);
+            });
+            let trained = trained.map_err(raise::<NetworkError>)?;
+            Ok(PyNetwork {
+                losses: trained.history.iter().map(|r| r.loss).collect(),
+                network: trained.network,
+            })
+        })
     }
 }

@@ -1,18 +1,15 @@
 //! One-cycle samples of an axis, and the predictor that is trained on them.
 
-use axis_pipeline::sampling::{SamplePlan, SampleSet, Sampler, SpeedDensity, ranges};
-use axis_pipeline::training::{INITIAL_DAMPING, NetworkPlan, train};
+use axis_pipeline::sampling::{SamplePlan, SampleSet, Sampler, SpeedDensity};
 use axis_sim::CycleInput;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 
 use crate::arrays;
-use crate::arrays::Layers;
 use crate::axis::PyAxis;
 use crate::errors::{NetworkError, raise};
 use crate::long::long;
-use crate::network::PyNetwork;
 use crate::value::{Value, value};
 
 /// Rows that are simulated between two looks at the hook.
@@ -115,39 +112,5 @@ impl PyAxis {
             Ok(all)
         })?;
         Ok(Samples(samples))
-    }
-
-    /// Trains the one-cycle predictor: what the best linear map of the samples leaves.
-    #[pyo3(signature = (samples, *, hidden = Layers(vec![34, 19, 8]), epochs = 500, seed = 1, threads = 0, progress = None))]
-    #[allow(clippy::too_many_arguments)]
-    fn train(
-        &self,
-        py: Python<'_>,
-        samples: PyRef<'_, Samples>,
-        hidden: Layers,
-        #[pyo3(from_py_with = arrays::epochs)] epochs: usize,
-        #[pyo3(from_py_with = arrays::seed)] seed: u64,
-        #[pyo3(from_py_with = arrays::threads)] threads: usize,
-        progress: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<PyNetwork> {
-        let (axis, samples) = (self.axis.clone(), samples.0.clone());
-        long(py, progress, move |hook| {
-            let plan = NetworkPlan {
-                hidden: hidden.0,
-                epochs,
-                initial_damping: INITIAL_DAMPING,
-                seed,
-                threads,
-            };
-            let ranges = ranges(&axis).map_err(raise::<NetworkError>)?;
-            let trained = train(&ranges, &samples, &plan, None, |report, _| {
-                hook.done("train", report.epoch as u64, epochs as u64);
-            });
-            let trained = trained.map_err(raise::<NetworkError>)?;
-            Ok(PyNetwork {
-                losses: trained.history.iter().map(|r| r.loss).collect(),
-                network: trained.network,
-            })
-        })
     }
 }

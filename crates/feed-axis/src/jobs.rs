@@ -8,7 +8,6 @@ use clap::{Args, Subcommand};
 use miette::{Result, miette};
 use serde::Serialize;
 
-use crate::commands::{robustness, sample, study};
 use crate::context::Claim;
 use crate::output::{Worded, print};
 use crate::progress::bar;
@@ -29,28 +28,6 @@ pub trait Jobs: Subcommand {
                 let _claim = options.claim()?;
                 whole(&*job)
             }
-        }
-    }
-}
-
-/// The jobs of users.
-#[derive(Subcommand)]
-pub enum UserJob {
-    /// Simulate one-cycle samples over a Latin hypercube (Section 4.2)
-    Sample(sample::Options),
-    /// Train networks of other damping, layers, neurons and epochs over several seeds (Tables 7 to
-    /// 10)
-    Study(study::Options),
-    /// Tracking error that compensation leaves when its model is wrong, draw by draw
-    Robustness(robustness::Options),
-}
-
-impl Jobs for UserJob {
-    fn options(&self) -> &dyn JobOptions {
-        match self {
-            Self::Sample(options) => options,
-            Self::Study(options) => options,
-            Self::Robustness(options) => options,
         }
     }
 }

@@ -5,8 +5,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use feed_axis::cli::{Global, finish, parse, start};
 use feed_axis::commands::Command;
+use feed_axis::commands::UserJob;
 use feed_axis::commands::manual::{self, Completions, Pages};
-use feed_axis::jobs::UserJob;
 
 /// Feed axes: simulate, identify, find what a model lacks, compensate.
 ///

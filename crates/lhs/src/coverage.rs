@@ -1,8 +1,9 @@
 //! How the points of a design lie to their nearest neighbours.
 
 use crate::Design;
-use crate::criteria::distance;
 use rayon::prelude::*;
+
+use crate::distance::distance;
 
 /// The edges of the shortest tree that joins all points.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -88,6 +88,7 @@ mod coverage;
 pub mod criteria;
 mod design;
 mod discrepancies;
+mod distance;
 mod error;
 mod hypercube;
 mod kernel;

@@ -9,7 +9,9 @@ use feed_axis::output::{Worded, note, print};
 use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::{Deserialize, Serialize};
 
-use super::contour_rows::{Bench, ROWS};
+use super::contour_bench::Bench;
+use super::contour_measured::Measured;
+use super::contour_rows::ROWS;
 
 /// Options of the command.
 // A group by itself: clap names groups after their type.
@@ -28,21 +30,6 @@ pub struct Options {
     /// Names of rows [default: all]; with names no table is written
     #[arg(value_name = "ROW")]
     names: Vec<String>,
-}
-
-/// What a row found.
-#[derive(Clone, Debug, Default, Deserialize, Serialize)]
-pub struct Measured {
-    /// What was run, in words.
-    pub what: String,
-    /// The goal, in words; empty for none.
-    pub goal: String,
-    /// The figures, in words.
-    pub found: String,
-    /// Whether the goal is met; of no goal none.
-    pub met: Option<bool>,
-    /// What limits it, and what the row does not say.
-    pub note: String,
 }
 
 #[derive(Deserialize, Serialize)]

@@ -4,8 +4,8 @@ use miette::{IntoDiagnostic, Result};
 use toolpath::named::butterfly;
 use toolpath::{FeedLimits, FeedProfile, Follower};
 
-use super::contour::Measured;
-use super::contour_rows::Bench;
+use super::contour_bench::Bench;
+use super::contour_measured::Measured;
 
 /// Points beside the butterfly against brute force along the same branch.
 pub fn foot(_: &Bench) -> Result<Measured> {

@@ -10,8 +10,8 @@ use miette::{IntoDiagnostic, Result};
 use rayon::prelude::*;
 use toolpath::named::butterfly;
 
-use super::contour::Measured;
-use super::contour_rows::{Bench, strategy};
+use super::contour_bench::{Bench, strategy};
+use super::contour_measured::Measured;
 
 /// Circles by radius (mm) and feed (m/min).
 const CIRCLES: [[f64; 2]; 3] = [[25.0, 10.0], [50.0, 3.0], [100.0, 1.0]];

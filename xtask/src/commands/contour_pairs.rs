@@ -7,8 +7,8 @@ use miette::Result;
 use rayon::prelude::*;
 use toolpath::named::Direction;
 
-use super::contour::Measured;
-use super::contour_rows::{Bench, Task, laps, strategy};
+use super::contour_bench::{Bench, Task, laps, strategy};
+use super::contour_measured::Measured;
 
 /// An axis file of each kind of mechanism that moves along a line; of the linear motor one with currents and one that takes a force.
 const KINDS: [(&str, &str); 7] = [

@@ -9,17 +9,11 @@ use campaign::{Column, Failure, Inputs, Job, Merged, Row, Value};
 use discover_matrix::matrix2::{Bench, Case, CaseOutcome, MatrixPlan, cases};
 use miette::{IntoDiagnostic, Result};
 
-use super::discover_matrix::{Kept, Options, replaceable};
+use super::matrix_kept::{Kept, replaceable};
+use super::matrix_options::Options;
 use crate::page::matrix2;
 use feed_axis::jobs::failure;
 use feed_axis::output::{ready, say, write_whole};
-
-/// Axis files of machines that are taken where none are given.
-pub(super) const MACHINES: [&str; 3] = [
-    "data/axes/liu2025.toml",
-    "data/axes/joint.toml",
-    "data/axes/linear-motor.toml",
-];
 
 /// The job of these options.
 pub(super) fn job(options: &Options) -> Result<Matrix2> {
@@ -184,6 +178,7 @@ impl Job for Matrix2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::commands::matrix_options::MACHINES;
 
     fn machines() -> Vec<Axis> {
         let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));

@@ -13,11 +13,11 @@ use compensator::NoCompensation;
 use feed_axis::output::{Worded, note, print};
 use independent_axis::{HeatedScrew, Motion, there_and_back};
 use miette::{IntoDiagnostic, Result};
-use serde::Serialize;
 use trajectories::{Program, Step};
 
-use super::heat_both::{AFTER, Cases, Compensated, kept};
-use super::heat_identified::{Identified, identified};
+use super::heat_both::{AFTER, Cases, kept};
+use super::heat_found::{Found, Row};
+use super::heat_identified::identified;
 use super::heat_table;
 
 /// Options of the command.
@@ -42,33 +42,6 @@ pub struct Options {
     /// The rows against brute force alone: neither fitted models nor both corrections
     #[arg(long)]
     numerics: bool,
-}
-
-/// Errors of the growth at 950 mm, µm.
-#[derive(Serialize)]
-pub struct Row {
-    pub what: &'static str,
-    pub hours: u32,
-    pub greatest_um: f64,
-    pub in_the_end_um: f64,
-    /// Growth in the end, by brute force.
-    pub growth_um: f64,
-    steps: u64,
-}
-
-/// All that was found.
-#[derive(Serialize)]
-pub struct Found {
-    pub against_brute_force: Vec<Row>,
-    /// By which the usual tolerance changes the growth over the hour, against a thousandth of it.
-    tolerance_um: f64,
-    /// Mean losses at 20 °C from the reference and from the simulated loop, W.
-    losses_w: [f64; 2],
-    pub identified: Vec<Identified>,
-    /// Both corrections, the position from the motor.
-    pub motor: Vec<Compensated>,
-    /// The dynamic part, the position from the scale.
-    pub scale: Vec<Compensated>,
 }
 
 const PLACE: f64 = 0.95;

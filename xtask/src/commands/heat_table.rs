@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use super::heat::Found;
 use super::heat_both::{AFTER, Compensated};
+use super::heat_found::Found;
 
 /// Goals of the rows, in µm after 60 minutes.
 const GOALS: [(&str, f64); 4] = [

@@ -9,7 +9,7 @@ use campaign::{Column, Failure, Inputs, Job, Merged, Row, Value};
 use discover_matrix::hidden::Exercise;
 use discover_matrix::matrix::{Bench, Case, CaseOutcome, Score};
 
-use super::discover_matrix::Kept;
+use super::matrix_kept::Kept;
 use crate::page::matrix;
 use feed_axis::jobs::failure;
 use feed_axis::output::{say, write_whole};

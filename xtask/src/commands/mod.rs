@@ -2,7 +2,9 @@
 
 pub mod bench;
 pub mod contour;
+mod contour_bench;
 mod contour_geometry;
+mod contour_measured;
 mod contour_networks;
 mod contour_pairs;
 mod contour_rows;
@@ -11,14 +13,18 @@ pub mod discover_matrix;
 mod discover_matrix2;
 pub mod heat;
 mod heat_both;
+mod heat_found;
 mod heat_identified;
 mod heat_table;
 pub mod independent;
 pub mod layers;
 mod matrix_job;
+mod matrix_kept;
+mod matrix_options;
 pub mod names;
 pub mod peers_cases;
 pub mod publish;
 pub mod torture;
 pub mod tuning;
 mod tuning_files;
+mod tuning_options;

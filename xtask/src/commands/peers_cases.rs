@@ -11,7 +11,7 @@ use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::{Deserialize, Serialize};
 use toml_edit::{DocumentMut, Item, Table, value};
 
-use super::discover_matrix2::MACHINES;
+use super::matrix_options::MACHINES;
 use feed_axis::context::read_text;
 use feed_axis::output::{ready, say, write_whole};
 

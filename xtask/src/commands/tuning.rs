@@ -1,45 +1,16 @@
 //! `tuning`: the example axes tuned, beside the figures of an independent search.
 
 use std::fmt::Write;
-use std::path::PathBuf;
 
 use axis_sim::Axis;
-use clap::Args;
 use drive_loop::{LoopSet, TuneSettings, Tuning, moves, with_acceleration};
 use feed_axis::output::{Worded, note, print};
 use miette::{IntoDiagnostic, Result, miette};
 use serde::Serialize;
 
 use super::tuning_files;
-
-/// Options of the command.
-#[derive(Args)]
-pub struct Options {
-    /// Folder of the axis files
-    #[arg(long, value_name = "DIR", default_value = "data/axes")]
-    pub axes: PathBuf,
-    /// Write axis files with tuned gains instead, as `feed-axis tune` makes them, of every file in the
-    /// folder that can be tuned, and print a Markdown table of their errors before and after
-    #[arg(long)]
-    write: bool,
-    /// Folder to write them to
-    #[arg(
-        long,
-        value_name = "DIR",
-        default_value = "data/axes/tuned",
-        requires = "write"
-    )]
-    pub out: PathBuf,
-    /// Names of the axes [default: all]
-    #[arg(value_name = "AXIS")]
-    pub names: Vec<String>,
-}
-
-impl Options {
-    pub fn asked(&self, name: &str) -> bool {
-        self.names.is_empty() || self.names.iter().any(|n| n == name)
-    }
-}
+pub use super::tuning_options::Options;
+use super::tuning_options::three;
 
 /// An axis, and what an independent search under the same constraints (maximum sensitivity 1.6, 2
 /// with one more cycle, over stroke ends, mass −10 and +40 %, sliding and stuck) left of its peak error
@@ -183,10 +154,4 @@ fn words(rows: &[Row]) -> String {
         );
     }
     text
-}
-
-/// Three significant digits.
-pub fn three(value: f64) -> String {
-    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
-    rounded.to_string()
 }

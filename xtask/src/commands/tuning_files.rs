@@ -10,7 +10,7 @@ use feed_axis::output::{Worded, note, print, ready, write_whole};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::Serialize;
 
-use super::tuning::{Options, three};
+use super::tuning_options::{Options, three};
 
 /// A tuned axis.
 #[derive(Serialize)]

@@ -5,99 +5,110 @@ use std::fmt::Write;
 use axis_sim::Axis;
 use discover_matrix::matrix::{CaseOutcome, NamedEffect, Rate, Score};
 
+/// A share of the cases: what it is called, and its target.
+type RateRow = (&'static str, fn(&Score) -> &Rate, &'static str);
+
+const RATES: [RateRow; 18] = [
+    (
+        "clean machines of which anything is said",
+        |score| &score.false_alarms,
+        "≤ 1 %",
+    ),
+    (
+        "single effects that can be seen",
+        |score| &score.detectable,
+        "",
+    ),
+    (
+        "of these, that can be told from all others",
+        |score| &score.separable,
+        "",
+    ),
+    (
+        "seen and told apart: named first",
+        |score| &score.right_first,
+        "≥ 95 %",
+    ),
+    (
+        "seen: named first, with look-alikes or without",
+        |score| &score.seen_first,
+        "",
+    ),
+    (
+        "seen: named first, or in the class of the first",
+        |score| &score.in_class,
+        "≥ 99 %",
+    ),
+    (
+        "seen, and named first: the verdict is explained",
+        |score| &score.explained,
+        "",
+    ),
+    (
+        "effects of the library: any name that is neither hidden nor alike",
+        |score| &score.confident_wrong,
+        "≤ 1 %",
+    ),
+    (
+        "not to be seen: silence, or right",
+        |score| &score.silence,
+        "",
+    ),
+    (
+        "both of a pair named, where both are seen and told apart",
+        |score| &score.both_of_pair,
+        "≥ 95 %",
+    ),
+    (
+        "all three of a triple, likewise",
+        |score| &score.all_of_triple,
+        "",
+    ),
+    (
+        "outside the library, seen: effects that the library can imitate",
+        |score| &score.imitated,
+        "",
+    ),
+    (
+        "the others: unknown, partly explained, or by a predicted look-alike",
+        |score| &score.outside,
+        "≥ 95 %",
+    ),
+    (
+        "taken out of the library, seen: unknown, partly explained, or by a predicted look-alike",
+        |score| &score.left_out,
+        "≥ 95 %",
+    ),
+    (
+        "95 % intervals that hold the truth",
+        |score| &score.coverage,
+        "90 to 98 %",
+    ),
+    (
+        "on poor motion, seen: named first, or in the class of the first",
+        |score| &score.poor,
+        "",
+    ),
+    (
+        "hidden effects in a class: an experiment was proposed",
+        |score| &score.proposed,
+        "",
+    ),
+    (
+        "proposed experiments, run, that split their class",
+        |score| &score.splits,
+        "≥ 90 %",
+    ),
+];
+
 /// The figures, one a line, as a table in Markdown.
 pub fn figures(score: &Score) -> String {
     let mut text = String::from("| figure | value | 95 % interval | target |\n|---|---|---|---|\n");
-    let mut rate = |name: &str, rate: &Rate, target: &str| {
-        let (value, interval) = match rate.of {
-            0 => ("none asked".to_owned(), String::new()),
-            _ => {
-                let [low, high] = rate.interval().map(|v| 100.0 * v);
-                let value = format!("{} ({:.1} %)", out_of(rate), 100.0 * rate.share());
-                (value, format!("{low:.1} to {high:.1} %"))
-            }
-        };
+    for (name, rate, target) in RATES {
+        let [value, interval] = rate_cells(rate(score));
         // Writing to a string cannot fail.
         let _ = writeln!(text, "| {name} | {value} | {interval} | {target} |");
-    };
-    rate(
-        "clean machines of which anything is said",
-        &score.false_alarms,
-        "≤ 1 %",
-    );
-    rate("single effects that can be seen", &score.detectable, "");
-    rate(
-        "of these, that can be told from all others",
-        &score.separable,
-        "",
-    );
-    rate(
-        "seen and told apart: named first",
-        &score.right_first,
-        "≥ 95 %",
-    );
-    rate(
-        "seen: named first, with look-alikes or without",
-        &score.seen_first,
-        "",
-    );
-    rate(
-        "seen: named first, or in the class of the first",
-        &score.in_class,
-        "≥ 99 %",
-    );
-    rate(
-        "seen, and named first: the verdict is explained",
-        &score.explained,
-        "",
-    );
-    rate(
-        "effects of the library: any name that is neither hidden nor alike",
-        &score.confident_wrong,
-        "≤ 1 %",
-    );
-    rate("not to be seen: silence, or right", &score.silence, "");
-    rate(
-        "both of a pair named, where both are seen and told apart",
-        &score.both_of_pair,
-        "≥ 95 %",
-    );
-    rate("all three of a triple, likewise", &score.all_of_triple, "");
-    rate(
-        "outside the library, seen: effects that the library can imitate",
-        &score.imitated,
-        "",
-    );
-    rate(
-        "the others: unknown, partly explained, or by a predicted look-alike",
-        &score.outside,
-        "≥ 95 %",
-    );
-    rate(
-        "taken out of the library, seen: unknown, partly explained, or by a predicted look-alike",
-        &score.left_out,
-        "≥ 95 %",
-    );
-    rate(
-        "95 % intervals that hold the truth",
-        &score.coverage,
-        "90 to 98 %",
-    );
-    rate(
-        "on poor motion, seen: named first, or in the class of the first",
-        &score.poor,
-        "",
-    );
-    rate(
-        "hidden effects in a class: an experiment was proposed",
-        &score.proposed,
-        "",
-    );
-    rate(
-        "proposed experiments, run, that split their class",
-        &score.splits,
-        "≥ 90 %",
-    );
+    }
     for (name, errors, target) in [
         (
             "error of sizes, known parameters exact: median, 90 %",
@@ -118,6 +129,18 @@ pub fn figures(score: &Score) -> String {
         "| gap gone on check motion, single effects named first: median | {reduction} | | ≥ 95 % |"
     );
     text
+}
+
+/// A share and its interval.
+fn rate_cells(rate: &Rate) -> [String; 2] {
+    if rate.of == 0 {
+        return ["none asked".to_owned(), String::new()];
+    }
+    let [low, high] = rate.interval().map(|v| 100.0 * v);
+    [
+        format!("{} ({:.1} %)", out_of(rate), 100.0 * rate.share()),
+        format!("{low:.1} to {high:.1} %"),
+    ]
 }
 
 pub(super) fn out_of(rate: &Rate) -> String {

@@ -1,7 +1,6 @@
 //! What is FMI 2.0's alone (FMI 2.0.5, Sections 2.2 and 4.3.1).
 
-use super::{naming, numbers, outputs};
-use crate::package::MODEL_IDENTIFIER;
+use super::{MODEL_IDENTIFIER, naming, numbers, outputs};
 use crate::variables::Variables;
 
 /// What of FMI this offers and what not, as attributes of the co-simulation; spelled as there.

@@ -2,8 +2,7 @@
 
 use axis_sim::Axis;
 
-use super::{naming, numbers, outputs};
-use crate::package::MODEL_IDENTIFIER;
+use super::{MODEL_IDENTIFIER, naming, numbers, outputs};
 use crate::variables::Variables;
 
 /// What of FMI this offers and what not, as attributes of the co-simulation.

@@ -173,6 +173,9 @@ fn escaped(text: &str) -> String {
     out
 }
 
+/// Name of the library's file in the archive, without its end.
+pub const MODEL_IDENTIFIER: &str = "feed_axis";
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,9 +4,9 @@
 //! it is proposed and never applied.
 
 use super::{Found, ProposedColumn};
-use crate::source_unit::known;
 use crate::table::Head;
 use crate::unit::stem_of;
+use crate::unit_table::known;
 
 /// A quantity: words that name it, the unit that it is taken in where none is said, and by
 /// dimension of the unit the channel, of what is, what should be, and of the motor.

@@ -158,13 +158,13 @@ pub fn propose(path: impl AsRef<Path>) -> Result<Option<MappingProposal>, ReadEr
 }
 
 fn proposal(path: &Path) -> Result<Option<MappingProposal>, ReadProblem> {
-    let bytes = crate::read::whole(path)?;
+    let bytes = crate::by_extension::whole(path)?;
     if let Some(format) = FORMATS.iter().find(|format| (format.is_it)(&bytes)) {
         let table = (format.open)(&bytes)?;
         let found = proposed(table, format.name, format.columns, format.caution);
         return Ok(Some(found));
     }
-    match crate::read::by_extension(path, &bytes) {
+    match crate::by_extension::by_extension(path, &bytes) {
         Ok(table) => {
             let name = "by the names of the columns";
             let found = proposed(table, name, by_name::proposed, BY_NAME);

@@ -7,7 +7,6 @@
 //! moves smoothly: each sample is predicted from its neighbours, at the instants that are stamped,
 //! at those of the rows beside it, and at even ones, and the instants that predict best are right.
 
-use super::recording::MOST_EMPTY;
 use crate::channel::Channel;
 use crate::numeric::grid::Grid;
 use crate::numeric::order::median;
@@ -257,3 +256,6 @@ fn interpolated(time: &[f64], steps: &Steps, samples: &[f64], even: &[f64]) -> V
     };
     even.iter().map(one).collect()
 }
+
+/// Rows of the grid for each row there is.
+pub(super) const MOST_EMPTY: usize = 4;

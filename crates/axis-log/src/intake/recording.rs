@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::done::Done;
 use super::error::IntakeError;
-use super::evened::{Stamps, even_out};
+use super::evened::{MOST_EMPTY, Stamps, even_out};
 use super::unwrapped::unwrapped;
 use crate::channel::Channel;
 use crate::mapping::Mapping;
@@ -41,8 +41,6 @@ pub(super) struct Even {
 /// Greatest distance of an instant from the grid at which it can be taken to lie on it,
 /// in periods.
 const MOST_JITTER: f64 = 0.25;
-/// Rows of the grid for each row there is.
-pub(super) const MOST_EMPTY: usize = 4;
 
 impl Recording {
     pub(super) fn read(

@@ -10,8 +10,8 @@ use crate::mapping::{ColumnMap, Mapping};
 use crate::numeric::align::{Fit, Free, align, integral};
 use crate::plus_minus::PlusMinus;
 use crate::select::in_its_unit;
-use crate::source_unit::slipped_unit;
 use crate::table::Head;
+use crate::unit_table::slipped_unit;
 
 /// What a cross-check says of a channel's mapping.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -120,5 +120,5 @@ fn write_whole(path: &Path, log: &Log) -> Result<(), CsvProblem> {
     let io = |action| move |source| CsvProblem::Io { action, source };
     let file = AtomicWriteFile::open(path).map_err(io("create a file in its folder"))?;
     write_csv_to(file.as_file(), log).map_err(io("write it"))?;
-    super::file::in_place(file).map_err(io("put it in place"))
+    super::in_place::in_place(file).map_err(io("put it in place"))
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 use atomic_write_file::AtomicWriteFile;
 
 use super::csv::CsvSink;
+use super::in_place::in_place;
 use super::{LogSink, WriteError, WriteProblem};
 use crate::log::Log;
 
@@ -105,11 +106,4 @@ impl LogSink for LogFile {
     fn finish(self: Box<Self>) -> io::Result<()> {
         in_place(self.sink.finish()?)
     }
-}
-
-/// Renames what was written aside.
-pub(super) fn in_place(file: AtomicWriteFile) -> io::Result<()> {
-    // Before the commit, which leaves the file aside behind where flushing fails.
-    file.sync_all()?;
-    file.commit()
 }

@@ -5,6 +5,7 @@ mod arrow_schema;
 mod columns;
 mod csv;
 mod file;
+mod in_place;
 #[cfg(feature = "mat")]
 mod mat;
 #[cfg(feature = "mat")]

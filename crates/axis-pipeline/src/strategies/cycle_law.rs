@@ -12,18 +12,6 @@ use compensator::{
 use super::{NetworkStrategy, Predictors, assumed_feedback};
 use crate::PipelineError;
 
-/// Names of the strategies that run cycle by cycle.
-pub const CYCLE_BY_CYCLE: &[&str] = &[
-    "network",
-    "network_lugre",
-    "network_lugre_printed",
-    "transfer_function",
-    "transfer_function_lugre",
-    "lugre",
-    "plan",
-    "feedback",
-];
-
 /// A strategy that runs cycle by cycle. A copy is its state.
 #[derive(Clone, Debug)]
 pub struct CycleLaw {

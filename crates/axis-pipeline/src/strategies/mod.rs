@@ -32,9 +32,11 @@ use compensator::{Compensator, Correction, Homed, LearnedMove, Sample};
 use trajectories::Motion;
 
 use crate::PipelineError;
+pub use crate::cycle_names::CYCLE_BY_CYCLE;
 use crate::heat::HeatAhead;
+pub use crate::need::Need;
 use crate::residuals::AnyLearner;
-pub use cycle_law::{CYCLE_BY_CYCLE, CycleLaw, PositionLaw, StreamedPlan};
+pub use cycle_law::{CycleLaw, PositionLaw, StreamedPlan};
 pub use drive_terms::reversal_start;
 pub use feedforward::Feedforward;
 pub use network::KIND as NETWORK;
@@ -165,35 +167,6 @@ pub enum ReportTable {
     WithFrictionFeedforward,
     /// More strategies, which the paper does not have.
     More,
-}
-
-/// What is found from simulation or measurement, and a strategy may be made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Need {
-    /// The trained one-cycle network.
-    Network,
-    /// The transfer functions of the tracking error.
-    TransferFunctions,
-    /// The friction parameters identified on the machine.
-    IdentifiedFriction,
-}
-
-impl Need {
-    /// All of them.
-    pub const ALL: [Self; 3] = [
-        Self::Network,
-        Self::TransferFunctions,
-        Self::IdentifiedFriction,
-    ];
-
-    /// In words.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Network => "the trained network",
-            Self::TransferFunctions => "the transfer functions of the tracking error",
-            Self::IdentifiedFriction => "the identified friction parameters",
-        }
-    }
 }
 
 impl StrategyKind {

@@ -5,10 +5,10 @@ use super::layout::Layout;
 use super::registry::Registry;
 use crate::SixDigits;
 use crate::actuator::Effort;
-use crate::axis::ValueRange;
 use crate::effects::{EFFECTS, EffectParameter};
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 use crate::part::{Key, Kind, PartKind, named};
+use crate::value_range::ValueRange;
 
 const KEYS: (&str, &str) = (
     "docs/axis-file.md",

@@ -8,15 +8,16 @@ use super::error::AxisFileError;
 use super::fields::Fields;
 use super::keys::SHARE;
 use crate::SixDigits;
-use crate::axis::{Axis, BalanceSettings, Stroke, Tolerances, ValueRange};
+use crate::axis::{Axis, BalanceSettings, Stroke, Tolerances};
 use crate::effects::{ActiveEffect, Effect, EffectParameter, Scales};
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 use crate::part::units::{MOTOR_SPEED, MOTOR_TORQUE};
 use crate::part::{Key, Known, Values};
 use crate::rating::{
     AxisDuty, DataSheets, MOTOR_CURVE, MotorPoint, RATING_KEYS, about, is_linear_unit,
 };
 use crate::thermal::{THERMAL_KEYS, is_of_screws};
+use crate::value_range::ValueRange;
 use crate::work::{MOST_SUBSTEPS, substeps_of};
 
 /// The entries of `[[effects]]`: `name`, and each parameter in SI units.

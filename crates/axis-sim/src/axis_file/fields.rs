@@ -10,7 +10,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{AxisFileError, Source};
-use super::layout::first_keys;
+use super::first_keys::first_keys;
 use super::slips::{list, unknown_key, unknown_word};
 use crate::part::{Key, Kind, PartError, Values};
 

@@ -5,31 +5,18 @@
 //! keep a slip of the pen (a wrong unit, an exponent too many) from turning into a run
 //! without an end or into numbers that no longer resolve.
 
-use super::layout::{Layout, SHORT_KINDS};
+use super::first_keys::{SHORT_KINDS, loop_keys};
+use super::layout::Layout;
 use crate::actuator::Effort;
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 use crate::part::units::*;
 use crate::part::{Key, count, number, quantity, table, tables, text, text_of, word};
 use crate::rating::rating_keys;
 use crate::thermal::THERMAL_KEYS;
-use crate::work::FREQUENCIES;
 
 /// The version of a file's layout: 2 has a section for each part.
 fn schema(layout: &Layout) -> u32 {
     if layout.has_sections() { 2 } else { 1 }
-}
-
-/// Keys of the table [control] that are not the controller's.
-pub(super) fn loop_keys(freedom: Freedom) -> Vec<Key> {
-    let limit = match freedom {
-        Freedom::Linear => quantity("following_error_limit", &LENGTH, 1e-6, 10.0),
-        Freedom::Rotary => quantity("following_error_limit", &ANGLE, 1e-9, 100.0),
-    };
-    vec![
-        quantity("frequency", &FREQUENCY, FREQUENCIES[0], FREQUENCIES[1]),
-        limit.optional(),
-        word("gains", &["given", "estimated"]).optional(),
-    ]
 }
 
 /// All keys of a file whose parts are of these kinds.

@@ -6,17 +6,14 @@
 
 use super::error::AxisFileError;
 use super::fields::Fields;
-use super::keys::loop_keys;
+use super::first_keys::{SHORT_KINDS, loop_keys};
 use super::registry::Registry;
 use crate::actuator::Actuator;
 use crate::control::{Control, absent};
 use crate::friction::Friction;
 use crate::load::Load;
 use crate::mechanism::{Freedom, Mechanism};
-use crate::part::{Key, PartKind, count, named, text, word};
-
-/// Kinds of the first schema.
-pub(super) const SHORT_KINDS: [&str; 2] = ["ball-screw", "rigid-mass"];
+use crate::part::{Key, PartKind, count, named, text};
 
 /// The four parts that every axis has once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -343,9 +340,4 @@ fn named_kind<P: ?Sized>(
 /// `kind`, one of the names of `kinds`.
 pub(super) fn kinds_key<P: ?Sized>(kinds: &[&'static PartKind<P>]) -> Key {
     Key::of_words("kind", kinds.iter().map(|kind| kind.name).collect())
-}
-
-/// What tells which keys a file may have.
-pub(super) fn first_keys() -> Vec<Key> {
-    vec![word("kind", &SHORT_KINDS), count("schema", 1, 2)]
 }

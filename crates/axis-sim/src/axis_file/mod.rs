@@ -5,6 +5,7 @@ mod doc_table;
 mod error;
 mod extras;
 mod fields;
+mod first_keys;
 mod keys;
 mod layout;
 mod read;

@@ -14,16 +14,17 @@ use crate::SixDigits;
 use crate::actuator::{Actuator, Effort};
 use crate::axis::{
     Axis, Experiment, FOLLOWING_ERROR_LIMIT, LoadSensor, MoveSpec, SampleRanges, Sensors,
-    Simulation, Stroke, Tolerances, ValueRange,
+    Simulation, Stroke, Tolerances,
 };
 use crate::closed_loop::ClosedLoop;
 use crate::control::{Control, absent, gain_fits, gain_turns};
-use crate::friction::FrictionPlace;
+use crate::friction::{Friction, FrictionPlace};
 use crate::load::Load;
 use crate::mechanism::{Freedom, Mechanism, SolutionMethod};
 use crate::part::{Key, Part, PartKind, Values};
 use crate::rating::DataSheets;
 use crate::sensor::Sensor;
+use crate::value_range::ValueRange;
 use crate::work::{MOST_STEPS, cycles_of, substeps_of};
 
 /// Tracking error at which a run is given up where a file of an axis that turns does
@@ -78,38 +79,12 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
     let freedom = mechanism.freedom();
     root.count("schema")?;
     let friction = part(&root, &layout, Section::Friction, layout.friction)?;
-    if let FrictionPlace::Load(of) = friction.at
-        && of != freedom
-    {
-        let what = format!(
-            "is of kind \"{}\", per {}, and the load of the mechanism \"{}\" moves in {}",
-            friction.kind().name,
-            of.unit(),
-            mechanism.kind().name,
-            freedom.unit()
-        );
-        let fits = names(&registry.frictions, |friction| match friction.at {
-            FrictionPlace::Motor => true,
-            FrictionPlace::Load(of) => of == freedom,
-        });
-        return Err(root.table("friction")?.refuse_table(what, &fits));
-    }
+    check_friction(&root, registry, &friction, &mechanism)?;
     let control = part(&root, &layout, Section::Control, layout.control)?;
     let has_control = !std::ptr::eq(layout.control, &absent::KIND);
     // Where there is none, no message is about it.
     let control_table = root.table(if has_control { "control" } else { "actuator" })?;
-    if let Some(effort) = control.effort()
-        && effort != actuator.effort()
-    {
-        let what = format!(
-            "has gains that end in a command in {}, but the actuator \"{}\" takes one in {}",
-            effort.unit(),
-            actuator.kind().name,
-            actuator.effort().unit()
-        );
-        let valid = format!("gains in units of {}", actuator.effort().unit());
-        return Err(control_table.refuse_table(what, &valid));
-    }
+    check_effort(&control_table, &control, &actuator)?;
     check_gains(&control_table, &control, actuator.effort(), &*mechanism)?;
     let period = match has_control {
         true => 1.0 / control_table.number("frequency")?,
@@ -131,11 +106,7 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
         true => control_table.optional_number("following_error_limit")?,
         false => None,
     };
-    let following_error_limit = limit.unwrap_or(match (layout.has_sections(), freedom) {
-        (_, Freedom::Rotary) => FOLLOWING_ANGLE_LIMIT,
-        (false, _) if control.starts_in_motion() => f64::INFINITY,
-        _ => FOLLOWING_ERROR_LIMIT,
-    });
+    let following_error_limit = limit.unwrap_or_else(|| usual_limit(&layout, freedom, &control));
     let control_estimated =
         has_control && control_table.has("gains") && control_table.word("gains")? == "estimated";
     let pace = Pace {
@@ -181,6 +152,63 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
     axis.rating = extras::rating(&root, &axis)?;
     extras::check_rating(&root, &axis)?;
     Ok(axis)
+}
+
+/// A friction per m or per rad of the load is of a load that moves like that.
+fn check_friction(
+    root: &Fields<'_>,
+    registry: &Registry,
+    friction: &Part<Friction>,
+    mechanism: &Part<dyn Mechanism>,
+) -> Result<(), AxisFileError> {
+    let freedom = mechanism.freedom();
+    if let FrictionPlace::Load(of) = friction.at
+        && of != freedom
+    {
+        let what = format!(
+            "is of kind \"{}\", per {}, and the load of the mechanism \"{}\" moves in {}",
+            friction.kind().name,
+            of.unit(),
+            mechanism.kind().name,
+            freedom.unit()
+        );
+        let fits = names(&registry.frictions, |friction| match friction.at {
+            FrictionPlace::Motor => true,
+            FrictionPlace::Load(of) => of == freedom,
+        });
+        return Err(root.table("friction")?.refuse_table(what, &fits));
+    }
+    Ok(())
+}
+
+/// A controller whose gains end in a command is of an actuator that takes it.
+fn check_effort(
+    table: &Fields<'_>,
+    control: &Part<dyn Control>,
+    actuator: &Part<dyn Actuator>,
+) -> Result<(), AxisFileError> {
+    if let Some(effort) = control.effort()
+        && effort != actuator.effort()
+    {
+        let what = format!(
+            "has gains that end in a command in {}, but the actuator \"{}\" takes one in {}",
+            effort.unit(),
+            actuator.kind().name,
+            actuator.effort().unit()
+        );
+        let valid = format!("gains in units of {}", actuator.effort().unit());
+        return Err(table.refuse_table(what, &valid));
+    }
+    Ok(())
+}
+
+/// Tracking error at which a run is given up where the file does not say.
+fn usual_limit(layout: &Layout, freedom: Freedom, control: &Part<dyn Control>) -> f64 {
+    match (layout.has_sections(), freedom) {
+        (_, Freedom::Rotary) => FOLLOWING_ANGLE_LIMIT,
+        (false, _) if control.starts_in_motion() => f64::INFINITY,
+        _ => FOLLOWING_ERROR_LIMIT,
+    }
 }
 
 /// Every gain ends in the actuator's command, per m or per rad as what it acts on moves.

@@ -15,8 +15,6 @@
 //! 428–444, doi:10.1109/TCST.2012.2185697). The page docs/theory/torque-balance.md has the
 //! formulas, what was decided, and the limits.
 
-mod channel;
-mod error;
 mod filter;
 mod friction_scatter;
 mod law;
@@ -31,16 +29,15 @@ mod wind_up;
 use axis_log::Log;
 
 use crate::axis::Axis;
+pub use crate::balance_error::{BalanceError, CutoffReason};
 use crate::control::absent::{encoder_skew, sampled_inertia};
 use crate::effects::ActiveEffect;
 use crate::replay::{Probe, ReplayError, Trace};
-use channel::TorqueChannel;
-pub(crate) use channel::torque_channels;
-pub use error::BalanceError;
+use crate::torque_channel::TorqueChannel;
 use filter::{LowPass, ahead, derivative};
 use law::{Ends, Motions, torque};
 use prepared::TorqueNoise;
-pub use quality::{BalanceQuality, CutoffReason};
+pub use quality::BalanceQuality;
 pub use shown::{FrictionCourse, ObservedMotion};
 pub use transmission::TRANSMISSION_ERROR;
 use transmission::{Transmission, error, give};

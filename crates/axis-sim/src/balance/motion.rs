@@ -2,12 +2,12 @@
 
 use axis_log::Log;
 
-use super::channel::names;
-use super::error::BalanceError;
 use super::filter::{LowPass, derivative, integral};
 use super::spectrum::{Noise, Source};
 use crate::axis::{Axis, LoadSensor};
-use crate::mechanism::Freedom;
+use crate::balance_error::BalanceError;
+use crate::freedom::Freedom;
+use crate::torque_channel::names;
 
 /// A coordinate with its derivatives, one value a sample.
 #[derive(Clone, Debug)]

@@ -5,18 +5,18 @@ use std::ops::Range;
 use axis_log::{Channel, Log};
 
 use super::Balance;
-use super::channel::TorqueChannel;
-use super::error::BalanceError;
 use super::filter::LowPass;
 use super::friction_scatter::Remeasured;
 use super::law::Motions;
 use super::motion::{Course, Measured, Whose};
-use super::quality::{BalanceQuality, CutoffReason, TOLERATED};
+use super::quality::{BalanceQuality, TOLERATED};
 use super::spectrum::{least_noise, passed};
 use super::transmission::Transmission;
 use super::wind_up::WindUp;
 use crate::axis::Axis;
+use crate::balance_error::{BalanceError, CutoffReason};
 use crate::replay::ReplayError;
+use crate::torque_channel::TorqueChannel;
 
 /// Highest cut-off of the motion, as a share of the sampling rate: above it, differences are
 /// no derivatives any more.
@@ -144,12 +144,7 @@ impl Balance {
         );
         let filter = LowPass::new(cutoff * period);
         let logged = log.channel(channel.name)?;
-        let noise = TorqueNoise {
-            channel,
-            torque: (least_noise(logged, period) * passed(0, cutoff)).sqrt(),
-            whose: measured[0].whose,
-            acceleration: measured[0].noise.least_acceleration(cutoff),
-        };
+        let noise = TorqueNoise::least(channel, logged, &measured[0], period, cutoff);
         let remeasured = Remeasured {
             axis,
             measured: &measured[0],
@@ -164,16 +159,8 @@ impl Balance {
         let creeps = creeps(axis, &motions.load, period, near);
         let kept = resolved(&moving, creeps, &scatter, near, noise.rms(axis) / per_force);
         if kept.len() < LEAST {
-            let error = BalanceError::Standstill {
-                kept: kept.len(),
-                samples: all,
-                least: LEAST,
-                speed: standstill,
-                unit: axis.freedom().speed_unit(),
-                cutoff,
-                reason,
-            };
-            return Err(error.into());
+            let (kept, speed) = (kept.len(), standstill);
+            return Err(stands_still([kept, all], speed, axis, Cutoff(cutoff, reason)).into());
         }
         let transmission = Transmission::of(measured, axis, period, cutoff);
         let pick = |series: &[f64]| -> Vec<f64> { kept.iter().map(|&k| series[k]).collect() };
@@ -201,11 +188,8 @@ impl Balance {
             Channel::new(axis.position_channel(), position.clone())?,
             Channel::new(channel.name, shown(logged))?,
         ];
-        if let Some(transmission) = &transmission {
-            compared.push(Channel::new(
-                transmission.name,
-                shown(&transmission.samples),
-            )?);
+        if let Some(of) = &transmission {
+            compared.push(Channel::new(of.name, shown(&of.samples))?);
         }
         let compared = Log::new(compared)?;
         Ok(Self {
@@ -224,6 +208,24 @@ impl Balance {
     }
 }
 
+/// Too few of all samples are left where the axis moves faster than `speed`.
+fn stands_still(
+    [kept, samples]: [usize; 2],
+    speed: f64,
+    axis: &Axis,
+    Cutoff(cutoff, reason): Cutoff,
+) -> BalanceError {
+    BalanceError::Standstill {
+        kept,
+        samples,
+        least: LEAST,
+        speed,
+        unit: axis.freedom().speed_unit(),
+        cutoff,
+        reason,
+    }
+}
+
 /// Least noise of the torque's channel, as the upper spectra of torque and motion leave it possible.
 #[derive(Clone, Debug)]
 pub(super) struct TorqueNoise {
@@ -236,6 +238,22 @@ pub(super) struct TorqueNoise {
 }
 
 impl TorqueNoise {
+    /// Of a channel as logged, beside what shows the motion, below the cut-off (Hz).
+    fn least(
+        channel: TorqueChannel,
+        logged: &[f64],
+        motion: &Measured,
+        period: f64,
+        cutoff: f64,
+    ) -> Self {
+        Self {
+            channel,
+            torque: (least_noise(logged, period) * passed(0, cutoff)).sqrt(),
+            whose: motion.whose,
+            acceleration: motion.noise.least_acceleration(cutoff),
+        }
+    }
+
     /// RMS in the channel's unit, with the inertia of this axis: a model makes torque of the
     /// acceleration's noise.
     pub(super) fn rms(&self, axis: &Axis) -> f64 {

@@ -1,5 +1,7 @@
 //! What was decided on a log, for messages.
 
+use crate::balance_error::CutoffReason;
+
 /// How a log was prepared for its torque balance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BalanceQuality {
@@ -52,31 +54,6 @@ impl BalanceQuality {
             self.speed_unit,
             self.unresolved,
         )
-    }
-}
-
-/// What sets the cut-off of a torque balance.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum CutoffReason {
-    /// The rate of the samples.
-    Sampling,
-    /// A resonance, below which the axis moves as one body.
-    Resonance,
-    /// Noise of the acceleration.
-    Noise,
-    /// The axis file.
-    Asked,
-}
-
-impl std::fmt::Display for CutoffReason {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Sampling => "the rate of the samples",
-            Self::Resonance => "the axis' lowest resonance",
-            Self::Noise => "noise of the acceleration",
-            Self::Asked => "[balance] cutoff_hz of the axis file",
-        })
     }
 }
 

@@ -5,12 +5,12 @@ use std::ops::Range;
 
 use axis_log::Log;
 
-use super::channel::TorqueChannel;
-use super::error::BalanceError;
 use super::filter::{LowPass, ahead, derivative};
 use super::motion::{Course, Measured, Whose};
 use super::spectrum::least_noise;
 use crate::axis::Axis;
+use crate::balance_error::BalanceError;
+use crate::torque_channel::TorqueChannel;
 
 /// Highest cut-off as a share of the sampling rate: above it, differences are no derivatives
 /// any more.

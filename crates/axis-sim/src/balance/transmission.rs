@@ -16,7 +16,7 @@ use super::motion::{Measured, Whose};
 use super::spectrum::{most_noise, passed};
 use crate::axis::Axis;
 use crate::effects::Hooks;
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 
 /// The channel of a log of which motor and load were measured.
 #[derive(Clone, Debug)]

@@ -3,9 +3,9 @@
 use feed_dynamics::DriveError;
 
 use super::ClosedLoop;
-use crate::axis::ValueRange;
 use crate::cycle::{Cycle, Outcome, Stop, StopReason};
 use crate::plant::AdvanceError;
+use crate::value_range::ValueRange;
 
 impl ClosedLoop {
     pub(super) fn stop_reason(&self, cycle: &Cycle) -> Option<StopReason> {

@@ -156,7 +156,7 @@ impl ClosedLoop {
         }
         let (axis, mut hooks) = axis.with_effects()?;
         disturb(&mut hooks);
-        let substeps = substeps(&axis);
+        let substeps = substeps(axis.period, axis.simulation.step);
         let assembly = Assembly {
             friction: axis.friction.share().as_ref().clone(),
             loads: axis.loads.iter().map(|load| load.share()).collect(),
@@ -202,7 +202,7 @@ impl ClosedLoop {
     /// to. Above [`MOST_STEPS`] it is refused ([`StopReason::TooLong`]).
     pub fn steps(&self, motion: &(impl Motion + ?Sized)) -> f64 {
         let cycles = cycles_of(motion.duration(), self.axis.period);
-        cycles * f64::from(substeps(&self.axis))
+        cycles * f64::from(substeps(self.axis.period, self.axis.simulation.step))
     }
 
     /// Time by which the load's channel is late in logs, s.

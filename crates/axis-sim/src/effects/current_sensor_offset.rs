@@ -37,7 +37,7 @@ pub(super) const EFFECT: Effect = Effect {
 
 fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 2] = super::changes::array(values);
-    let poles = to.axis.actuator.pole_pairs();
+    let poles = to.axis.pole_pairs();
     let offset = &mut to.sensors().current_offset;
     for (phase, by) in offset.phases.iter_mut().zip(v) {
         *phase += by;

@@ -1,17 +1,18 @@
 //! Puts effects into an axis.
 
-use super::changes::{Changes, Hooks};
+use super::changes::{Changeable, Changes};
+use super::hooks::Hooks;
 use super::{ActiveEffect, EffectParameter};
 use crate::axis::Axis;
 use crate::error::SetupError;
-use crate::part::PartError;
+use crate::part::{PartError, Role};
 
 /// Makes the effects' changes to the axis, and gives their hooks.
 ///
 /// # Errors
 /// [`SetupError`] if a value is not a number, the axis has no part for an effect to
 /// act on, or a parameter leaves its range.
-pub(crate) fn install(effects: &[ActiveEffect], axis: &mut Axis) -> Result<Hooks, SetupError> {
+fn install(effects: &[ActiveEffect], axis: &mut Axis) -> Result<Hooks, SetupError> {
     let mut hooks = Hooks::default();
     if let Some(error) = axis.mechanism.kinematic_error() {
         hooks.offset(move |screw| error(screw));
@@ -80,5 +81,49 @@ fn check(active: &ActiveEffect) -> Result<(), SetupError> {
             "a finite number",
         )
         .into()),
+    }
+}
+
+impl Axis {
+    /// The axis with its effects' changes made, and their hooks.
+    pub(crate) fn with_effects(&self) -> Result<(Self, Hooks), SetupError> {
+        let mut axis = self.clone();
+        let hooks = install(&self.effects, &mut axis)?;
+        Ok((axis, hooks))
+    }
+}
+
+impl Changeable for Axis {
+    fn change(&mut self, role: Role, to: &dyn Fn(f64) -> f64) -> Result<(), SetupError> {
+        Axis::change(self, role, to)
+    }
+
+    fn copy(&self) -> Box<dyn Changeable> {
+        Box::new(self.clone())
+    }
+
+    fn travel_per_radian(&self) -> f64 {
+        Axis::travel_per_radian(self)
+    }
+
+    fn friction_lever(&self) -> f64 {
+        self.friction.lever(Axis::travel_per_radian(self))
+    }
+
+    fn stroke_start(&self) -> f64 {
+        self.stroke.start
+    }
+
+    fn stiffness(&self) -> f64 {
+        self.mechanism.stiffness().unwrap_or(f64::INFINITY)
+    }
+
+    fn greatest_force(&self) -> f64 {
+        let torque = self.torque_constant() * self.actuator.limit();
+        torque / Axis::travel_per_radian(self)
+    }
+
+    fn pole_pairs(&self) -> Option<f64> {
+        self.actuator.pole_pairs()
     }
 }

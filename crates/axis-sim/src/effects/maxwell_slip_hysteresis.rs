@@ -18,7 +18,7 @@ use super::{
     Effect, EffectChannel, EffectVariable, Measure, MemoryLaw, Nature, TableStep, shape, size,
 };
 use crate::error::SetupError;
-use crate::plant::Start;
+use crate::start::Start;
 
 /// Greatest deflections as shares of the pre-sliding distance.
 const REACHES: [f64; 4] = [0.125, 0.25, 0.5, 1.0];

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::plant::Start;
+use crate::start::Start;
 
 /// How the load moved in one step, as a force with a memory sees it.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,7 +1,6 @@
 //! The numbers of an effect, and what they are on a given axis.
 
-use crate::axis::Axis;
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 use crate::part::Role;
 
 /// One number of an effect. Values are in SI units.
@@ -137,21 +136,21 @@ pub struct Scales {
     /// How the load moves.
     pub freedom: Freedom,
     /// Greatest force of the actuator at the load.
-    force: f64,
+    pub(super) force: f64,
     /// Way by which that force winds the transmission up.
-    displacement: f64,
+    pub(super) displacement: f64,
     /// Speed of its fastest trajectory.
-    speed: f64,
+    pub(super) speed: f64,
     /// Load inertia that the force moves as fast.
-    inertia: f64,
+    pub(super) inertia: f64,
     /// Inertia of all that moves, at the motor.
-    motor_inertia: f64,
+    pub(super) motor_inertia: f64,
     /// Greatest torque of the motor.
-    motor_torque: f64,
+    pub(super) motor_torque: f64,
     /// Greatest command.
-    effort: f64,
+    pub(super) effort: f64,
     /// Acceleration that the force gives to all that moves.
-    acceleration: f64,
+    pub(super) acceleration: f64,
     /// Length of a motion on which effects are looked for.
     pub motion: f64,
     /// Least and greatest position.
@@ -160,46 +159,10 @@ pub struct Scales {
     pub start: f64,
 }
 
-/// The paper's axis (data/axes/liu2025.toml), of which effects give typical sizes.
-const PAPER_LEVER: f64 = 0.010 / std::f64::consts::TAU;
-const PAPER_TORQUE: f64 = 1.641 * 15.0;
-const PAPER_STIFFNESS: f64 = 7.45e7;
-const PAPER_SPEED: f64 = 0.12;
-const PAPER_MASS: f64 = 515.0;
-const PAPER_INERTIA: f64 = 0.0096;
 /// Length of the motions on which effects are looked for there, m.
-const PAPER_MOTION: f64 = 0.2;
+pub(super) const PAPER_MOTION: f64 = 0.2;
 
 impl Scales {
-    /// Those of an axis. Where its file lists no trajectories, nothing says how fast it is meant
-    /// to be, and the paper's speed stands.
-    pub fn of(axis: &Axis) -> Self {
-        let travel = axis.travel_per_radian();
-        let torque = axis.torque_constant() * axis.actuator.limit();
-        let force = torque / travel;
-        let stroke = axis.stroke.maximum - axis.stroke.minimum;
-        let fastest = axis.trajectories.iter().map(|t| t.limits.velocity());
-        let fastest = fastest.reduce(f64::max).unwrap_or(PAPER_SPEED);
-        let stiffness = axis.mechanism.stiffness();
-        let load = axis.mechanism.load_inertia();
-        let paper_force = PAPER_TORQUE / PAPER_LEVER;
-        Self {
-            freedom: axis.freedom(),
-            force: force / paper_force,
-            displacement: stiffness.map_or(1.0, |k| (force / k) / (paper_force / PAPER_STIFFNESS)),
-            speed: fastest / PAPER_SPEED,
-            inertia: load / PAPER_MASS,
-            motor_inertia: axis.mechanism.total_inertia() / PAPER_INERTIA,
-            motor_torque: torque / PAPER_TORQUE,
-            effort: axis.actuator.limit() / 15.0,
-            acceleration: (torque / axis.mechanism.total_inertia() * travel)
-                / (PAPER_TORQUE / PAPER_INERTIA * PAPER_LEVER),
-            motion: (stroke * PAPER_MOTION / 1.5).max(f64::MIN_POSITIVE),
-            stroke: [axis.stroke.minimum, axis.stroke.maximum],
-            start: axis.stroke.start,
-        }
-    }
-
     /// By how much a measure is larger here than on the paper's axis.
     pub fn ratio(&self, measure: Measure) -> f64 {
         let ratio = match measure {
@@ -379,29 +342,5 @@ impl EffectNeed {
             Self::TurningMotor => "motor that turns",
             Self::LinearMotor => "linear motor with poles",
         }
-    }
-
-    /// Whether the axis has it, or else what it lacks.
-    pub(super) fn met(self, axis: &Axis) -> Result<(), String> {
-        let has = match self {
-            Self::Role(role) => axis.has(role),
-            Self::Transmission => axis.mechanism.stiffness().is_some(),
-            Self::MotorEncoder => axis.mechanism.has_motor_encoder(),
-            Self::AnotherClock => axis.mechanism.has_motor_encoder() || !axis.has_control(),
-            Self::Reference => axis.has_control(),
-            Self::Currents => axis.actuator.has_currents(),
-            Self::Poles => axis.actuator.pole_pairs().is_some(),
-            Self::Turning => axis.freedom() == Freedom::Rotary,
-            Self::TurningMotor => axis.mechanism.motor_freedom() == Freedom::Rotary,
-            Self::LinearMotor => {
-                axis.freedom() == Freedom::Linear
-                    && axis.mechanism.stiffness().is_none()
-                    && axis.actuator.pole_pairs().is_some()
-            }
-        };
-        if has {
-            return Ok(());
-        }
-        Err(format!("this axis has no {}", self.name()))
     }
 }

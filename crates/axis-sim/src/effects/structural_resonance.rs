@@ -19,7 +19,7 @@ use super::{
     Effect, EffectChannel, EffectVariable, Measure, MemoryLaw, Nature, TableStep, shape, size,
 };
 use crate::error::SetupError;
-use crate::plant::Start;
+use crate::start::Start;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "structural-resonance",

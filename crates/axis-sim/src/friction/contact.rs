@@ -10,7 +10,7 @@ use lugre::{
 
 use super::keys::steady;
 use super::{Friction, FrictionPlace};
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 use crate::part::{PartError, Values};
 
 /// How many elements a Maxwell-slip friction has.

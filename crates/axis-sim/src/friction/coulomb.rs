@@ -5,7 +5,7 @@ use std::sync::Arc;
 use lugre::Parameters;
 
 use super::{Friction, FrictionPlace};
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 use crate::part::units::{ANGLE, FORCE, LENGTH, LINEAR_DAMPING, ROTARY_DAMPING, TORQUE};
 use crate::part::{Known, PartError, PartKind, Values, quantity};
 

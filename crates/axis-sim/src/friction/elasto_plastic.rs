@@ -8,7 +8,7 @@ use super::Friction;
 use super::contact::of_bristle;
 use super::keys::{linear, rotary};
 use super::lugre_at_motor::{BREAK_AWAY, COULOMB_LEVEL};
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 use crate::part::{Known, PartError, PartKind, Values, number};
 
 pub(super) static LINEAR: PartKind<Friction> = PartKind {

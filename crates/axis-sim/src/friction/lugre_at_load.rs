@@ -2,7 +2,7 @@
 
 use super::lugre_at_motor::{KNOWN, build};
 use super::{Friction, FrictionPlace};
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 use crate::part::units::{
     ANGULAR_SPEED, FORCE, LINEAR_DAMPING, ROTARY_DAMPING, SPEED, STIFFNESS, TORQUE, TORSION,
 };

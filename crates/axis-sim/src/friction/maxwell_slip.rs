@@ -11,7 +11,7 @@ use super::Friction;
 use super::contact::{ELEMENTS, with_contact};
 use super::keys::{linear, rotary, steady};
 use super::lugre_at_motor::{BREAK_AWAY, COULOMB_LEVEL};
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 use crate::part::units::{ANGLE, LENGTH, TIME};
 use crate::part::{Known, PartError, PartKind, Values, quantity};
 

@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 use lugre::{LuGre, Parameters};
 
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 use crate::part::{PartError, PartKind};
 
 /// All kinds of friction, one line each.

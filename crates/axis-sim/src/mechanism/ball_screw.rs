@@ -10,10 +10,10 @@ use feed_dynamics::{
 };
 
 use super::{Mechanism, ScrewShape, SolutionMethod};
-use crate::axis::ValueRange;
 use crate::part::units::{DENSITY, INERTIA, LENGTH, MASS, PRESSURE, STIFFNESS, TIME, TORSION};
 use crate::part::{Known, PartError, PartKind, Role, Values, count, number, quantity, word};
 use crate::plant::{Assembly, Plant};
+use crate::value_range::ValueRange;
 
 pub(super) static KIND: PartKind<dyn Mechanism> = PartKind {
     name: "ball-screw",

@@ -6,9 +6,9 @@ use feed_dynamics::{BeltStrands, InSeries, Stiffness};
 
 use super::Mechanism;
 use super::elastic::Elastic;
-use crate::axis::ValueRange;
 use crate::part::units::{FORCE, INERTIA, LENGTH, MASS, TIME, TORSION};
 use crate::part::{Known, PartError, PartKind, Role, Values, number, quantity};
+use crate::value_range::ValueRange;
 
 pub(super) static KIND: PartKind<dyn Mechanism> = PartKind {
     name: "belt",

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use feed_dynamics::{DriveError, ElasticDrive, ElasticDriveParameters, ElasticStepper, Stiffness};
 
 use super::{Freedom, KinematicError, Mechanism, ScrewShape, SolutionMethod};
-use crate::axis::ValueRange;
 use crate::part::{PartError, Values};
 use crate::plant::{Assembly, Plant};
+use crate::value_range::ValueRange;
 
 /// Motor and load with a transmission between.
 pub(super) struct Elastic {

@@ -15,10 +15,11 @@ use std::sync::Arc;
 use compensator::Mode;
 use feed_dynamics::DriveError;
 
-use crate::axis::ValueRange;
 use crate::effects::ScrewState;
+pub use crate::freedom::Freedom;
 use crate::part::PartKind;
 use crate::plant::{Assembly, Plant};
+use crate::value_range::ValueRange;
 
 /// All kinds of mechanism, one line each.
 pub const MECHANISMS: &[&PartKind<dyn Mechanism>] = &[
@@ -31,42 +32,6 @@ pub const MECHANISMS: &[&PartKind<dyn Mechanism>] = &[
     &direct::ROTARY,
     &rigid_mass::KIND,
 ];
-
-/// How the load moves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Freedom {
-    /// Along a line: m, N, kg.
-    #[default]
-    Linear,
-    /// About an axis: rad, N·m, kg·m².
-    Rotary,
-}
-
-impl Freedom {
-    /// SI unit of its position.
-    pub fn unit(self) -> &'static str {
-        match self {
-            Self::Linear => "m",
-            Self::Rotary => "rad",
-        }
-    }
-
-    /// SI unit of its speed.
-    pub fn speed_unit(self) -> &'static str {
-        match self {
-            Self::Linear => "m/s",
-            Self::Rotary => "rad/s",
-        }
-    }
-
-    /// What moves it, and the SI unit of that.
-    pub fn force(self) -> [&'static str; 2] {
-        match self {
-            Self::Linear => ["force", "N"],
-            Self::Rotary => ["torque", "N·m"],
-        }
-    }
-}
 
 /// How a mechanism's equations are solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

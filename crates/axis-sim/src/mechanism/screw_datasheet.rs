@@ -17,9 +17,9 @@ use feed_dynamics::{InSeries, Mounting, ScrewShaft, Stiffness};
 
 use super::elastic::Elastic;
 use super::{Mechanism, ScrewShape};
-use crate::axis::ValueRange;
 use crate::part::units::{DENSITY, INERTIA, LENGTH, MASS, PRESSURE, STIFFNESS, TIME, TORSION};
 use crate::part::{Known, PartError, PartKind, Role, Values, quantity, word};
+use crate::value_range::ValueRange;
 
 pub(super) static KIND: PartKind<dyn Mechanism> = PartKind {
     name: "screw-datasheet",

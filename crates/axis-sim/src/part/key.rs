@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::units::Dimension;
 use super::{Role, Values};
 use crate::SixDigits;
-use crate::axis::ValueRange;
+use crate::value_range::ValueRange;
 
 /// One key of a table of the axis file: made by [`quantity`], [`number`],
 /// [`count`] or [`word`].

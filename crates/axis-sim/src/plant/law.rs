@@ -6,8 +6,7 @@ use std::sync::Arc;
 use feed_dynamics::{DriveError, NutErrors, Settled, TimeStepper};
 use lugre::LuGre;
 
-use super::state::State;
-use super::{Plant, Running, Seen, Start};
+use super::{Plant, Start};
 use crate::effects::{Hooks, ScrewState, Steepness, TableState};
 use crate::friction::{ContactState, Friction};
 use crate::load::Load;
@@ -94,7 +93,7 @@ const SETTLING_ROUNDS: usize = 60;
 
 impl<S: TimeStepper> Law<S> {
     /// Whether all loads act at the start: in a motion that goes on, and at a rest under them.
-    fn is_loaded(start: &Start) -> bool {
+    pub(super) fn is_loaded(start: &Start) -> bool {
         start.held || start.speed != 0.0 || start.acceleration != 0.0
     }
 
@@ -111,7 +110,7 @@ impl<S: TimeStepper> Law<S> {
 
     /// Bristle deflections, in the friction's coordinate: the law's and the unit
     /// element's.
-    fn bristles(&self, start: &Start) -> [f64; 2] {
+    pub(super) fn bristles(&self, start: &Start) -> [f64; 2] {
         let (law, unit) = (&self.assembly.friction.law, &self.assembly.friction.unit);
         let speed = start.speed / self.lever;
         if speed != 0.0 {
@@ -122,7 +121,7 @@ impl<S: TimeStepper> Law<S> {
     }
 
     /// What a law that is not LuGre remembers at the start.
-    fn contact(&self, start: &Start) -> Option<ContactState> {
+    pub(super) fn contact(&self, start: &Start) -> Option<ContactState> {
         let share = start.friction.clamp(-1.0, 1.0);
         let contact = self.assembly.friction.contact.as_ref();
         contact.map(|law| law.settled(start.speed / self.lever, share))
@@ -144,7 +143,7 @@ impl<S: TimeStepper> Law<S> {
         }
     }
 
-    fn settled(&self, start: &Start) -> Settled {
+    pub(super) fn settled(&self, start: &Start) -> Settled {
         let mut motion = self.settled_under(start, 0.0);
         if !(self.feels_transmission && Self::is_loaded(start)) {
             return motion;
@@ -202,48 +201,5 @@ impl<S: TimeStepper> Law<S> {
     pub(super) fn errors(&self, at: &ScrewState, origin: f64) -> Result<NutErrors, DriveError> {
         let [offset, rate] = self.assembly.hooks.offset_at(at);
         NutErrors::new(offset - origin, rate, self.assembly.backlash)
-    }
-}
-
-impl<S> Plant for Law<S>
-where
-    S: TimeStepper + fmt::Debug + Send + Sync + 'static,
-    S::State: fmt::Debug + Send + Sync + 'static,
-{
-    fn start(self: Arc<Self>, start: &Start) -> Result<Box<dyn Running>, DriveError> {
-        let motion = self.settled(start);
-        let drive = self.stepper.settled(start.position, &motion)?;
-        let at = self.stepper.observe(&drive);
-        let torque = self.stepper.settled_torque(start.position, &motion);
-        let [bristle, unit_bristle] = self.bristles(start);
-        let mut state = State {
-            origin: start.position,
-            motor_origin: start.position / self.travel,
-            offset_origin: 0.0,
-            bristle,
-            contact: self.contact(start),
-            unit_bristle,
-            memory: self.assembly.hooks.memories().settled(start).0,
-            travelled: 0.0,
-            outer_load: 0.0,
-            force_change: 0.0,
-            motor_acceleration: start.acceleration / self.travel,
-            loaded: Self::is_loaded(start),
-            seen: Seen::default(),
-            law: self,
-            drive,
-        };
-        let origins = [state.origin, state.motor_origin];
-        state.seen = Seen::of(&at, origins, start.time, torque, motion.load);
-        let (angle, force) = (state.seen.motor_angle, state.seen.transmission_force);
-        let screw = state.seen.screw(start.time, angle, force);
-        let [offset, _] = state.law.assembly.hooks.offset_at(&screw);
-        state.offset_origin = offset;
-        Ok(Box::new(state))
-    }
-
-    fn torque(&self, start: &Start) -> f64 {
-        let motion = self.settled(start);
-        self.stepper.settled_torque(start.position, &motion)
     }
 }

@@ -1,5 +1,6 @@
 //! The machine between two samples: actuator, mechanism, friction and loads.
 
+mod begin;
 mod law;
 mod state;
 
@@ -7,11 +8,12 @@ use std::fmt;
 use std::sync::Arc;
 
 use feed_dynamics::{DriveError, Observation};
-use thiserror::Error;
 
 pub use self::law::Assembly;
 use crate::actuator::Actuating;
 use crate::effects::ScrewState;
+pub use crate::error::AdvanceError;
+pub use crate::start::Start;
 
 /// A machine that motions can be started on.
 pub trait Plant: fmt::Debug + Send + Sync {
@@ -67,54 +69,6 @@ pub trait Running: fmt::Debug + Send + Sync {
     /// Friction at the load as it acts now, N or N·m, and the share of its
     /// Coulomb deflection that the bristles have.
     fn friction(&self) -> [f64; 2];
-}
-
-/// Why a machine in motion cannot go on.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum AdvanceError {
-    /// The mechanics refuse the step: an effect shifts the transmission by no number.
-    #[error(transparent)]
-    Drive(#[from] DriveError),
-    /// No force on the load was found that goes with the motion that it leads to.
-    #[error(
-        "no force on the load is consistent with its motion after {rounds} iterations (relative residual {residual}): friction, loads and effects must be finite, and bounded or growing with the speed"
-    )]
-    LoadNotFound {
-        /// Forces that were tried.
-        rounds: u32,
-        /// What was left of the last one, N or N·m.
-        residual: f64,
-    },
-}
-
-/// Position and speed that a machine starts with, and what it was left with.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Start {
-    /// Position of the load, m or rad.
-    pub position: f64,
-    /// Its speed, m/s or rad/s.
-    pub speed: f64,
-    /// Its acceleration, m/s² or rad/s².
-    pub acceleration: f64,
-    /// Time since the motion began, s.
-    pub time: f64,
-    /// At rest, share of the Coulomb deflection that the bristles were left with,
-    /// −1 to 1: an axis that came forward and stopped is held back by up to 1.
-    pub friction: f64,
-    /// Whether loads that stand from before on act at once, held by drive and bristles.
-    /// Otherwise those of effects come up over 20 ms where the start is at rest.
-    pub held: bool,
-}
-
-impl Start {
-    /// At rest and relaxed.
-    pub fn at(position: f64) -> Self {
-        Self {
-            position,
-            ..Self::default()
-        }
-    }
 }
 
 /// What can be seen of a machine.

@@ -11,9 +11,9 @@ mod motion;
 mod motor_items;
 mod sheets;
 
+pub use crate::data_sheets::{DataSheets, MotorPoint};
 pub use duty::{AxisDuty, DutyStretch};
 pub use item::{CheckedItem, ItemState, ItemVerdict};
-pub use sheets::{DataSheets, MotorPoint};
 
 pub(crate) use keys::{About, MOTOR_CURVE, RATING_KEYS, about, is_linear_unit, rating_keys};
 use sheets::Sheets;
@@ -25,7 +25,7 @@ use thiserror::Error;
 use crate::axis::Axis;
 use crate::cycle::RunStopped;
 use crate::error::SetupError;
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 use crate::thermal::THERMAL_KEYS;
 
 /// Why an axis cannot be checked.

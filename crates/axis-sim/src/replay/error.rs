@@ -3,7 +3,7 @@
 use axis_log::LogError;
 use thiserror::Error;
 
-use crate::balance::BalanceError;
+use crate::balance_error::BalanceError;
 use crate::work::MOST_STEPS;
 use crate::{RunStopped, SetupError, SixDigits};
 

@@ -7,7 +7,7 @@ mod signal;
 
 use std::fmt;
 
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 use crate::part::PartKind;
 
 /// All kinds of position sensor, one line each.

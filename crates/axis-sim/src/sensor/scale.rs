@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::Sensor;
 use super::signal::Signal;
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 use crate::part::units::{ANGLE, LENGTH, TIME};
 use crate::part::{PartKind, quantity};
 

@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::{Sensing, Sensor};
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 
 /// A sensor by its numbers, in m or rad.
 #[derive(Clone, Copy, Debug)]

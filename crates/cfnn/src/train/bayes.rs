@@ -20,25 +20,12 @@
 //! gradient leads back. So a step must lower `F` by less than a share
 //! ([`super::Bayesian::estimate_below`]) first.
 
-use super::report::EpochReport;
+use super::report::{EpochReport, Hyperparameters};
 
 /// Epochs in a row whose changes must lie below the tolerance.
 const CALM: usize = 5;
 /// So large that products with sums of squares do not overflow.
 const LARGEST: f64 = 1e100;
-
-/// What Bayesian regularisation estimates beside the weights.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hyperparameters {
-    /// Factor `α` of the sum of squared weights: `1/(2α)` is the variance of
-    /// the weights.
-    pub alpha: f64,
-    /// Factor `β` of the sum of squared scaled residuals: `1/(2β)` is the
-    /// variance of the noise, on scaled data.
-    pub beta: f64,
-    /// Effective number of parameters `γ`.
-    pub effective_parameters: f64,
-}
 
 /// What the estimates follow from.
 #[derive(Debug, Clone, Copy)]
@@ -51,6 +38,26 @@ pub(super) struct Fit {
     pub squares: f64,
     /// `E_W`.
     pub weights: f64,
+}
+
+/// Whether the estimates have come to a standstill; an epoch without new ones
+/// says nothing about that.
+pub(super) fn settled(history: &[EpochReport], tolerance: f64) -> bool {
+    let Some(last) = history.len().checked_sub(CALM + 1) else {
+        return false;
+    };
+    tolerance > 0.0
+        && history[last..].windows(2).all(|pair| {
+            match (pair[0].hyperparameters, pair[1].hyperparameters) {
+                (Some(before), Some(after)) => after != before && after.near(&before, tolerance),
+                _ => false,
+            }
+        })
+}
+
+/// `E_W`.
+pub(super) fn squares(weights: &[f64]) -> f64 {
+    weights.iter().map(|w| w * w).sum()
 }
 
 impl Hyperparameters {
@@ -93,24 +100,4 @@ impl Hyperparameters {
             && near(self.beta, before.beta)
             && near(self.effective_parameters, before.effective_parameters)
     }
-}
-
-/// Whether the estimates have come to a standstill; an epoch without new ones
-/// says nothing about that.
-pub(super) fn settled(history: &[EpochReport], tolerance: f64) -> bool {
-    let Some(last) = history.len().checked_sub(CALM + 1) else {
-        return false;
-    };
-    tolerance > 0.0
-        && history[last..].windows(2).all(|pair| {
-            match (pair[0].hyperparameters, pair[1].hyperparameters) {
-                (Some(before), Some(after)) => after != before && after.near(&before, tolerance),
-                _ => false,
-            }
-        })
-}
-
-/// `E_W`.
-pub(super) fn squares(weights: &[f64]) -> f64 {
-    weights.iter().map(|w| w * w).sum()
 }

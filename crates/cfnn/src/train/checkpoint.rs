@@ -1,7 +1,6 @@
 use std::vec::Vec;
 
-use super::bayes::Hyperparameters;
-use super::report::{EpochReport, History};
+use super::report::{EpochReport, History, Hyperparameters};
 use super::settings::TrainingSettings;
 use crate::{Network, Scaling, Shape};
 

@@ -83,13 +83,12 @@ mod split;
 mod tests;
 mod trainer;
 
-pub use bayes::Hyperparameters;
 #[cfg(feature = "artifact")]
 pub(crate) use checkpoint::Best;
 pub use checkpoint::Checkpoint;
 pub use dataset::Dataset;
 pub use engine::MAX_TRAINING_BYTES;
 pub use initial::{nguyen_widrow, starting_weights};
-pub use report::{EpochReport, History, TrainingOutcome};
+pub use report::{EpochReport, History, Hyperparameters, TrainingOutcome};
 pub use settings::{Bayesian, EarlyStopping, Initialisation, Normalisation, TrainingSettings};
 pub use trainer::Trainer;

@@ -1,7 +1,5 @@
 use std::vec::Vec;
 
-use super::bayes::Hyperparameters;
-
 /// Why a training ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -46,3 +44,16 @@ pub struct EpochReport {
 
 /// The reports of all epochs so far.
 pub type History = Vec<EpochReport>;
+
+/// What Bayesian regularisation estimates beside the weights.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hyperparameters {
+    /// Factor `α` of the sum of squared weights: `1/(2α)` is the variance of
+    /// the weights.
+    pub alpha: f64,
+    /// Factor `β` of the sum of squared scaled residuals: `1/(2β)` is the
+    /// variance of the noise, on scaled data.
+    pub beta: f64,
+    /// Effective number of parameters `γ`.
+    pub effective_parameters: f64,
+}

@@ -1,11 +1,11 @@
 use std::vec::Vec;
 
-use super::bayes::{Fit, Hyperparameters, settled, squares};
+use super::bayes::{Fit, settled, squares};
 use super::checkpoint::{Best, Checkpoint};
 use super::dataset::{Dataset, SampleBlock, blocks};
 use super::engine::{Engine, Step};
 use super::initial::{Placement, adapt_first_layer, starting_weights};
-use super::report::{EpochReport, History, TrainingOutcome};
+use super::report::{EpochReport, History, Hyperparameters, TrainingOutcome};
 use super::settings::{Initialisation, MIN_DAMPING, Normalisation, TrainingSettings};
 use super::split::split;
 use crate::error::{all_finite, same_length};

@@ -15,9 +15,9 @@ use lugre::LuGre;
 use nalgebra::SVector;
 
 use super::assumed::AssumedModel;
+use super::coordinates::{GAP, HELD, OFFSET};
 use super::parameter::{AdaptParameter, COUNT, Theta};
 use super::record::Record;
-use super::residual::{GAP, HELD, OFFSET};
 use crate::Kinematics;
 
 /// Change of a parameter by which sensitivities are found.

@@ -2,11 +2,12 @@
 
 use std::vec::Vec;
 
+use super::coordinates::GAP;
 use super::information::{gained, inverse};
 use super::known::{ALL, Column, Information, Known};
 use super::parameter::{COUNT, Theta};
 use super::record::Record;
-use super::residual::{GAP, Residuals};
+use super::residual::Residuals;
 
 /// Most Gauss–Newton steps.
 const STEPS: usize = 30;

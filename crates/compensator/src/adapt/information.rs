@@ -2,10 +2,11 @@
 
 use std::vec::Vec;
 
+use super::coordinates::GAP;
 use super::known::{ALL, Column, Full, Information, Known};
 use super::parameter::{COUNT, Theta};
 use super::record::Record;
-use super::residual::{GAP, Residuals, Weights};
+use super::residual::{Residuals, Weights};
 
 /// No move tells a parameter to better than this: a model is none of the axis to more.
 const MODEL: f64 = 5e-4;

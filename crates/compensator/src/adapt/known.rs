@@ -3,9 +3,10 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::assumed::AssumedModel;
+use super::coordinates::GAP;
 use super::parameter::{AdaptParameter, COUNT, Theta};
 use super::record::Record;
-use super::residual::{GAP, NUISANCES, Residuals};
+use super::residual::{NUISANCES, Residuals};
 
 /// Parameters and nuisances.
 pub(super) const ALL: usize = COUNT + NUISANCES;

@@ -19,6 +19,7 @@
 mod assumed;
 mod balance;
 mod check;
+mod coordinates;
 mod error;
 mod fit;
 mod information;

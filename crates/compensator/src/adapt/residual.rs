@@ -6,19 +6,14 @@ use nalgebra::{SMatrix, SVector};
 
 use super::assumed::AssumedModel;
 use super::balance::{Balance, torque, wind_up};
-use super::parameter::{AdaptParameter, COUNT};
+use super::coordinates::{HELD, OFFSET};
+use super::parameter::AdaptParameter;
 use super::record::Record;
 use super::smooth::Point;
 use super::weight::weights;
 
 /// Unknowns of a record that no model keeps.
 pub(super) const NUISANCES: usize = 3;
-/// Force that its bristles begin with, beside what the torque tells, in break-away levels.
-pub(super) const HELD: usize = COUNT;
-/// Angle between the two scales, rad.
-pub(super) const OFFSET: usize = COUNT + 1;
-/// Half the free travel, rad at the motor.
-pub(super) const GAP: usize = COUNT + 2;
 
 /// Deviation of [`HELD`].
 const HELD_DEVIATION: f64 = 0.1;

@@ -11,6 +11,7 @@ use std::vec::Vec;
 use libm::sqrt;
 use nalgebra::{DMatrix, DVector};
 
+use super::unexplained::Unexplained;
 use super::{ResidualBasis, ResidualRow, ResidualTables};
 
 /// Part of the power of a move not learned from that must be explained for use, and of the
@@ -29,21 +30,6 @@ const SLIDES: f64 = 0.95;
 const STRETCH: f64 = 0.05;
 /// Share of the greatest speed below which an axis is slow.
 const SLOW: f64 = 0.1;
-
-/// What the model did not explain at an instant of a log.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Unexplained {
-    /// Position of the load, m or rad.
-    pub position: f64,
-    /// Angle of the motor, rad.
-    pub motor_angle: f64,
-    /// Its speed, rad/s.
-    pub motor_speed: f64,
-    /// Share of the Coulomb level that the bristles hold, −1 to 1.
-    pub direction: f64,
-    /// Torque at the motor that was needed besides, N·m, smoothed by a Gaussian.
-    pub torque: f64,
-}
 
 /// Learns a residual from move to move, a [`super::ResidualModel`] if nothing else is
 /// named.

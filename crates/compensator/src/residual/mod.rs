@@ -25,19 +25,23 @@ mod network;
 mod network_basis;
 #[cfg(feature = "identify")]
 mod tables;
+#[cfg(feature = "identify")]
+mod unexplained;
 
 use axis_scalar::Scalar;
 
 #[cfg(feature = "identify")]
 pub use basis::{ResidualBasis, ResidualRow, over_gaussian};
 #[cfg(feature = "identify")]
-pub use learn::{ResidualLearner, Unexplained};
+pub use learn::ResidualLearner;
 #[cfg(feature = "alloc")]
 pub use network::{NETWORK_INPUTS, ResidualNetwork};
 #[cfg(feature = "identify")]
 pub use network_basis::NetworkBasis;
 #[cfg(feature = "identify")]
 pub use tables::ResidualTables;
+#[cfg(feature = "identify")]
+pub use unexplained::Unexplained;
 
 /// Harmonics of the motor's angle.
 pub const HARMONICS: usize = 24;

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use super::draft::Draft;
-use super::name::check_free;
 use super::part::Part;
 use super::{CSource, Precision};
+use crate::name::check_free;
 use crate::{ExportError, ExportedController, NamedText};
 
 /// Puts the texts together.

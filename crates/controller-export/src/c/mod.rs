@@ -23,7 +23,6 @@ mod friction;
 mod guard;
 mod head;
 mod input;
-mod name;
 mod network;
 mod part;
 mod plan;
@@ -33,7 +32,6 @@ use cfnn::NetworkScalar;
 use lugre::Exponential;
 
 pub use input::Input;
-pub(crate) use name::check_name;
 
 use crate::{ExportError, ExportedController, ExportedLaw, NamedText, Position};
 use draft::Draft;

@@ -10,6 +10,7 @@ mod law;
 mod noise;
 mod outside;
 mod rough;
+mod rough_kind;
 mod rough_stream;
 mod truth;
 
@@ -19,7 +20,7 @@ pub use law::{Factor, Law, LawShape, LawVariable, Ranges};
 pub(crate) use law::{LAW, LAW_NAME};
 pub use noise::Noise;
 pub use outside::OUTSIDE;
-pub use rough::{Entry, NoiseColour, Rough};
+pub use rough_kind::{Entry, NoiseColour, Rough};
 pub use truth::Truth;
 
 use axis_log::{Channel, Log};

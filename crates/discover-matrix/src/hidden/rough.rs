@@ -4,56 +4,10 @@
 use axis_log::quality::outliers;
 use axis_log::{Channel, Log, LogError};
 use axis_sim::Measured;
-use serde::{Deserialize, Serialize};
 
 use super::noise::Noise;
+use super::rough_kind::{Entry, NoiseColour, Rough};
 use super::rough_stream::Stream;
-
-/// What is added to white noise in the loop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum NoiseColour {
-    /// White noise.
-    White,
-    /// First-order filtered noise and a line at one frequency.
-    Coloured,
-    /// Steps of a resolution.
-    Quantised,
-    /// Rare samples that are far off.
-    Outliers,
-}
-
-/// Where that enters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Entry {
-    /// In the sensors: the controller sees it as well.
-    Loop,
-    /// In the logger: only the log shows it.
-    Logger,
-}
-
-/// Noise of a case. White noise of `level` in the loop is always there.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Rough {
-    /// White noise in the loop, as a multiple of that of good sensors ([`Noise::good`]).
-    pub level: f64,
-    /// What comes beside it.
-    pub colour: NoiseColour,
-    /// Where that enters; outliers enter in the logger.
-    pub entry: Entry,
-    /// Standard deviation of what comes beside, or its resolution, as a multiple of the
-    /// white noise.
-    pub share: f64,
-    /// Corner frequency of coloured noise, Hz.
-    pub corner: f64,
-    /// Frequency of its line, Hz.
-    pub line: f64,
-    /// Probability of an outlier in each sample of each channel.
-    pub rare: f64,
-    /// Size of outliers, as a multiple of the white noise.
-    pub far: f64,
-}
 
 impl Rough {
     /// White noise in the loop, so many times that of good sensors, and nothing beside it.

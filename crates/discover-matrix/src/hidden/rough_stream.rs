@@ -4,7 +4,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha20Rng;
 
 use super::noise::Normal;
-use super::rough::{NoiseColour, Rough};
+use super::rough_kind::{NoiseColour, Rough};
 
 /// What one channel gets.
 pub(super) struct Stream {

@@ -9,6 +9,7 @@ pub mod interval;
 pub mod known;
 pub mod linear;
 pub mod projector;
+mod refine;
 pub mod spread;
 pub mod starts;
 pub mod step;

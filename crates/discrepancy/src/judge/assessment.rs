@@ -1,15 +1,11 @@
 //! What the first screen of a report needs beside the numbers: costs, confidence, remedies.
 
-use std::f64::consts::PI;
-
-use axis_log::never_zero;
-use axis_sim::effects::{Effect, EffectParameter};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::cost::Cost;
-use super::remedy::{DriveFunction, Remedy};
-use super::types::{EffectFound, Recalibrated, Verdict};
+use super::recalibrated::Recalibrated;
+use super::remedy::DriveFunction;
 use crate::controller::OwnController;
 
 /// How far a verdict can be relied on.
@@ -37,7 +33,7 @@ impl Level {
         }
     }
 
-    fn lowered(self, steps: usize) -> Self {
+    pub(super) fn lowered(self, steps: usize) -> Self {
         let all = [Self::Low, Self::Medium, Self::High];
         all[(self as usize).saturating_sub(steps)]
     }
@@ -84,96 +80,4 @@ pub struct RemedyFound {
     pub function: DriveFunction,
     /// What is entered there.
     pub parameter: String,
-}
-
-/// Share of the tolerance from which a parameter is at its edge: fits end just inside.
-const EDGE: f64 = 0.99;
-
-/// Half width of an interval over the value from which it is wide.
-const WIDE: f64 = 0.25;
-
-impl Confidence {
-    pub(super) fn new(
-        verdict: Verdict,
-        effects: &[EffectFound],
-        known: &[Recalibrated],
-        taken_for_noise: bool,
-    ) -> Self {
-        let at_edge: Vec<Recalibrated> = known.iter().filter(|k| k.is_at_edge()).cloned().collect();
-        let wide: Vec<[String; 2]> = effects.iter().flat_map(wide).collect();
-        let alike = effects
-            .iter()
-            .filter(|e| !e.indistinguishable_from.is_empty());
-        let ambiguous: Vec<String> = alike.map(|e| e.name.clone()).collect();
-        let from = match verdict {
-            Verdict::Explained | Verdict::NothingMissing | Verdict::OtherForm => Level::High,
-            Verdict::PartlyExplained => Level::Medium,
-            Verdict::Unknown => Level::Low,
-        };
-        let doubts = [
-            at_edge.is_empty(),
-            wide.is_empty(),
-            ambiguous.is_empty(),
-            !taken_for_noise,
-        ];
-        let steps = doubts.iter().filter(|none| !**none).count();
-        Self {
-            level: from.lowered(steps),
-            at_edge,
-            wide,
-            ambiguous,
-        }
-    }
-}
-
-impl Recalibrated {
-    /// Whether the fit moved it to the limit of its tolerance. An angle that may have any value has no limit.
-    pub fn is_at_edge(&self) -> bool {
-        let is_any = self.is_angle && self.tolerance >= EDGE * PI;
-        self.tolerance > 0.0 && !is_any && self.share.abs() >= EDGE * self.tolerance
-    }
-
-    /// By how much it was moved, with its unit.
-    pub fn moved(&self) -> String {
-        match self.is_angle {
-            true => format!("{:+.3}°", self.share.to_degrees()),
-            false => format!("{:+.2} %", 100.0 * self.share),
-        }
-    }
-
-    /// Its tolerance, with its unit.
-    pub fn within(&self) -> String {
-        match self.is_angle {
-            true => format!("{}°", never_zero(self.tolerance.to_degrees(), 3)),
-            false => format!("{} %", never_zero(100.0 * self.tolerance, 2)),
-        }
-    }
-}
-
-/// Sizes of an effect that are known badly; places and phases may be.
-fn wide(effect: &EffectFound) -> Vec<[String; 2]> {
-    let known = Effect::named(&effect.name);
-    let is_size = |name: &str| {
-        let parameters = known.map_or(&[][..], |e| e.parameters);
-        parameters
-            .iter()
-            .filter(|p: &&EffectParameter| p.is_size())
-            .any(|p| p.name == name)
-    };
-    let sizes = effect.parameters.iter().filter(|p| is_size(&p.name));
-    let badly = sizes.filter(|p| 0.5 * (p.ci95[1] - p.ci95[0]) > WIDE * p.value.abs());
-    badly
-        .map(|p| [effect.name.clone(), p.name.clone()])
-        .collect()
-}
-
-/// The remedies of named effects, in their order.
-pub(super) fn remedies(effects: &[EffectFound]) -> Vec<RemedyFound> {
-    let lines = effects.iter().filter_map(|e| Remedy::of(&e.name));
-    let one = |remedy: &Remedy| RemedyFound {
-        effect: remedy.effect.to_owned(),
-        function: remedy.function,
-        parameter: remedy.parameter.to_owned(),
-    };
-    lines.map(one).collect()
 }

@@ -1,6 +1,7 @@
 //! What a discovery says: verdict, effects with intervals, gap before and after.
 
 mod against;
+mod assess;
 mod assessment;
 mod cost;
 mod experiment;
@@ -12,6 +13,7 @@ mod likeness;
 mod motions;
 mod notes;
 mod overlay;
+mod recalibrated;
 mod remedy;
 mod sentence;
 mod term;
@@ -27,7 +29,7 @@ use axis_sim::{Axis, ReplayError};
 
 pub use self::against::Against;
 use self::against::against;
-use self::assessment::remedies;
+use self::assess::remedies;
 pub use self::assessment::{Assessment, Confidence, Level, RemedyFound};
 pub use self::cost::{Cost, EffortCost, Size, TrackingCost};
 use self::cost::{cost, whole_cost};
@@ -43,11 +45,12 @@ pub use self::likeness::{Likeness, Shown};
 use self::notes::{above_noise_note, faster_notes, notes, slow_of_loop_note};
 pub use self::overlay::Overlay;
 use self::overlay::overlays;
+pub use self::recalibrated::Recalibrated;
 pub use self::remedy::{DriveFunction, REMEDIES, Remedy};
 use self::sentence::sentence;
 pub use self::types::{
     AtScrew, Discovery, EffectFound, FigureLogs, Gaps, NextExperiment, ParameterFound,
-    Recalibrated, RefusedEffects, ReplacedEffect, Verdict,
+    RefusedEffects, ReplacedEffect, Verdict,
 };
 pub use self::units::ReadUnit;
 pub use self::unknown::{Curve, Unknown};

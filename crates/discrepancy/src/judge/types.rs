@@ -8,6 +8,7 @@ use super::assessment::Assessment;
 use super::experiment::Proposal;
 use super::form::FormFound;
 use super::likeness::Likeness;
+use super::recalibrated::Recalibrated;
 use super::unknown::Unknown;
 use crate::answers::LogSet;
 use crate::name::gap::Gap;
@@ -219,20 +220,6 @@ pub struct NextExperiment {
     /// The motion, as a program file has it (`simulate --program`).
     #[schemars(with = "serde_json::Map<String, serde_json::Value>")]
     pub program: Program,
-}
-
-/// A known parameter that was moved inside its tolerance.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Recalibrated {
-    /// Name.
-    pub name: String,
-    /// Share of its value by which it was moved; of an angle that angle, rad.
-    pub share: f64,
-    /// Tolerance, likewise.
-    pub tolerance: f64,
-    /// Whether it is an angle.
-    #[serde(default)]
-    pub is_angle: bool,
 }
 
 /// Of files from before there was another way.

@@ -3,7 +3,7 @@
 use nalgebra::Complex;
 
 use super::Amplitudes;
-use super::transform::Transform;
+use super::transform::{RAMP, Transform};
 
 /// How bands and bins are laid out for a set of logs.
 #[derive(Clone, Debug)]
@@ -36,9 +36,6 @@ const HIGHEST: f64 = 400.0;
 /// Rate to which faster logs are averaged in blocks before they are
 /// transformed, Hz: measured and simulated ones alike, so nothing is biased.
 const BLOCKS: f64 = 1e3;
-
-/// Longest ramp at either end of a log, s.
-pub(super) const RAMP: f64 = 0.15;
 
 /// Upper edge of the first band, Hz. Motion has its power below it; were it cut
 /// finer, what the model lacks would pass for noise just where it sits, and the

@@ -21,6 +21,7 @@
 //! do. The other real one, at half the sampling rate, lies above the highest
 //! frequency that is used.
 
+mod amplitudes;
 mod deviance;
 mod layout;
 mod lomb;

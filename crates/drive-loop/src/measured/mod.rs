@@ -1,7 +1,8 @@
 //! Frequency responses that were measured on an axis: estimated from its logs, compared with its model.
 
+mod beside_model;
 mod compare;
-mod plant;
+mod model_at;
 mod record;
 mod traps;
 
@@ -17,8 +18,8 @@ use crate::error::LoopError;
 use crate::set::LoopSet;
 use record::Recorded;
 
+pub use crate::measured_plant::MeasuredPlant;
 pub use compare::{ComparedMode, Comparison};
-pub use plant::MeasuredPlant;
 pub use traps::Trap;
 
 /// How a response is measured.
@@ -220,7 +221,7 @@ impl MeasuredDrive {
         let speed = estimate(recorded.speed, false)?;
         let all: Vec<Record<'_>> = recorded.records(recorded.load, true).collect();
         let load = FrequencyResponse::of_all(&all, by, averaging)?;
-        let at = compare::ModelAt::new(axis, recorded.position)?;
+        let at = model_at::ModelAt::new(axis, recorded.position)?;
         let plant = MeasuredPlant::new(
             &at,
             [angle.as_ref(), speed.as_ref(), Some(&load)],
@@ -334,7 +335,7 @@ fn lines(of: &FrequencyResponse) -> Vec<MeasuredLine> {
 fn margins(
     recorded: &Recorded<'_>,
     averaging: Averaging,
-    at: &compare::ModelAt,
+    at: &model_at::ModelAt,
     plant: &MeasuredPlant,
 ) -> Result<Option<MeasuredMargins>, LoopError> {
     // u = S F r: open loop from r to u, so H1 has no bias.

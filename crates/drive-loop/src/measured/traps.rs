@@ -5,7 +5,7 @@ use frequency_response::FrequencyResponse;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::compare::ModelAt;
+use super::model_at::ModelAt;
 use super::record::Recorded;
 use super::{MeasureSettings, MeasuredMargins};
 use crate::error::LoopError;

@@ -4,8 +4,9 @@
 use axis_fmu::UnitError;
 use safer_ffi::prelude::*;
 
-use crate::call::{Address, call};
+use crate::call::call;
 use crate::component::{ComponentAt, of};
+use crate::status::Address;
 
 /// Never looked at.
 type Count = usize;

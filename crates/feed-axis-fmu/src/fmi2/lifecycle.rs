@@ -3,11 +3,12 @@
 use safer_ffi::prelude::*;
 
 use super::Bool;
-use crate::call::{Address, Status, call, caught, text};
+use crate::call::{call, caught, text};
 use crate::component::{Callbacks, ComponentAt, Made, of};
 use crate::instance::{Instance, unit};
 use crate::log::{Log, To, c_text};
 use crate::resource_path::resource_path;
+use crate::status::{Address, Status};
 
 /// `fmi2CoSimulation` of `fmi2Type`.
 const CO_SIMULATION: i32 = 1;

@@ -4,8 +4,9 @@ use axis_fmu::{FmiMode, UnitError};
 use safer_ffi::prelude::*;
 
 use super::Bool;
-use crate::call::{Address, Status, call};
+use crate::call::call;
 use crate::component::{Component, ComponentAt, of};
+use crate::status::{Address, Status};
 
 // Of `fmi2StatusKind`.
 const DO_STEP_STATUS: i32 = 0;

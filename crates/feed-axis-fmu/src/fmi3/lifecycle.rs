@@ -3,10 +3,11 @@
 use safer_ffi::prelude::*;
 
 use super::Bool;
-use crate::call::{Address, Status, call, caught, text};
+use crate::call::{call, caught, text};
 use crate::component::{ComponentAt, Made, of};
 use crate::instance::{Instance, unit};
 use crate::log::{Log, LogMessage, To};
+use crate::status::{Address, Status};
 
 fn log(environment: Address, message: Option<LogMessage>) -> Log {
     Log::new(message.map(|message| To::Fmi3 {

@@ -12,7 +12,8 @@ use miette::{IntoDiagnostic, Result};
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
 use crate::out_file;
 use crate::output::{Worded, print};
-use crate::page;
+use crate::page::loops as loops_page;
+use crate::page::loops::{compliance_unit, place};
 use crate::set_key::{SetKey, with_keys};
 
 /// Options of `analyse`.
@@ -80,7 +81,7 @@ pub fn command(options: &Options) -> Result<()> {
     let value = LoopAnalysis::of(&axis, &set).into_diagnostic()?;
     let mut text = words(&value);
     if let Some(path) = &options.report {
-        axis_report::write_atomic(path, &page::loops::page(&value)).into_diagnostic()?;
+        axis_report::write_atomic(path, &loops_page::page(&value)).into_diagnostic()?;
         text += &format!("{}\n", path.display());
     }
     print("analyse", &Worded { text, value })
@@ -122,18 +123,6 @@ fn of_corner(found: &LoopAnalysis, value: Option<f64>, corner: usize) -> String 
     }
 }
 
-/// A corner in words.
-pub fn place(at: &drive_loop::Corner, unit: &str) -> String {
-    let state = if at.stuck { "stuck" } else { "sliding" };
-    let mut text = format!("{state} at {} {unit}", SixDigits(at.position));
-    for (what, share) in [("mass", at.mass), ("friction", at.friction)] {
-        if share != 1.0 {
-            text += &format!(", {what} × {}", SixDigits(share));
-        }
-    }
-    text
-}
-
 fn one(found: &LoopAnalysis, m: &CornerMargins) -> String {
     let mut text = format!("{}:\n", place(&m.at, &found.position_unit));
     if !m.stable {
@@ -170,14 +159,6 @@ fn one(found: &LoopAnalysis, m: &CornerMargins) -> String {
         );
     }
     text
-}
-
-/// m/N or rad/(N·m).
-pub fn compliance_unit(found: &LoopAnalysis) -> String {
-    match found.force_unit.as_str() {
-        "N" => format!("{}/N", found.position_unit),
-        other => format!("{}/({other})", found.position_unit),
-    }
 }
 
 fn margins(cut: &CutMargins) -> String {

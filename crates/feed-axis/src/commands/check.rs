@@ -10,7 +10,7 @@ use miette::{IntoDiagnostic, Result, WrapErr};
 use super::analyse::axis_with;
 use super::check_words::{Checked, CheckedRow};
 use super::discover::read_as_one;
-use super::heat::repeated;
+use super::heat_program::repeated;
 use super::motions::listed;
 use crate::context::DEFAULT_AXIS;
 use crate::exit::wrong_use;

@@ -1,7 +1,6 @@
 //! `contour`: two axes on a circle, in both directions; a machine on any path.
 
 use std::f64::consts::FRAC_PI_4;
-use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -12,14 +11,13 @@ use axis_sim::{Axis, ClosedLoop, Measured};
 use clap::Args;
 use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result, WrapErr};
-use serde::{Deserialize, Serialize};
-use toolpath::iso230_4::{
-    CircleFigures, DirectionFigures, NominalCircle, figures, quadrant_glitches,
-};
+use toolpath::iso230_4::{DirectionFigures, NominalCircle, figures, quadrant_glitches};
 use toolpath::named::{CirclePath, CircleTest, Direction};
 use toolpath::{FeedLimits, FeedProfile};
 
+use super::contour_circle::{Contoured, Turned};
 use super::contour_drives::ContourError;
+use super::contour_found::{AFTER_REVERSAL, Both, Reversal};
 use super::contour_laps::{self, ReferenceCorrection, Run};
 use super::contour_paths::{LapOptions, PathOptions};
 use super::contour_results::ResultFolders;
@@ -99,9 +97,6 @@ pub struct Options {
     #[arg(long, value_name = "OUT.html", value_parser = out_file::page())]
     report: Option<PathBuf>,
 }
-
-/// Window after a reversal in which its glitch is sought, rad.
-pub const AFTER_REVERSAL: f64 = 0.35;
 
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
@@ -249,9 +244,6 @@ impl Options {
 /// Instants at which the greatest speed of a turn is looked for.
 const INSTANTS: u32 = 2000;
 
-/// Share of the feed from which on it counts as reached.
-const REACHED: f64 = 0.99;
-
 /// One direction, as it was run.
 struct Turn {
     duration: f64,
@@ -302,70 +294,6 @@ fn turn(options: &Options, axes: &[Axis; 2], direction: Direction) -> Result<Tur
     })
 }
 
-/// What was found, in µm.
-#[derive(Serialize)]
-pub struct Contoured<'a> {
-    /// Names of the axes.
-    pub x: &'a str,
-    pub y: &'a str,
-    pub compensation: &'a str,
-    pub radius_mm: f64,
-    pub feed_m_per_min: f64,
-    /// Greatest speed along the path.
-    pub fastest_m_per_min: f64,
-    /// Of one direction, run-in and run-out included.
-    pub duration_s: f64,
-    pub clockwise: Turned,
-    pub counterclockwise: Turned,
-    pub both: Both,
-    report: Option<&'a Path>,
-}
-
-/// One direction.
-#[derive(Serialize)]
-pub struct Turned {
-    /// Greatest distance from the circle.
-    pub contour_error_um: f64,
-    /// Circular deviation G.
-    pub g_um: f64,
-    /// Radial deviations F.
-    pub f_max_um: f64,
-    pub f_min_um: f64,
-    /// Peaks of the radial deviation after an axis has reversed.
-    pub reversals: Vec<Reversal>,
-}
-
-/// The peak after a reversal.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-pub struct Reversal {
-    pub axis: String,
-    /// Where the axis reverses, from +X towards +Y.
-    pub angle_deg: f64,
-    pub peak_um: f64,
-}
-
-/// Both directions together.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-pub struct Both {
-    /// Bidirectional circular deviation G(b).
-    pub g_um: f64,
-    /// Circular hysteresis H.
-    pub h_um: f64,
-    /// Mean bidirectional radial deviation D.
-    pub d_um: f64,
-}
-
-impl Reversal {
-    /// Of a peak that was found.
-    pub fn of(glitch: &toolpath::iso230_4::QuadrantGlitch) -> Self {
-        Self {
-            axis: ["X", "Y"][glitch.axis.min(1)].to_owned(),
-            angle_deg: glitch.angle.to_degrees(),
-            peak_um: 1e6 * glitch.peak,
-        }
-    }
-}
-
 impl Turned {
     fn of(turn: &Turn, found: &DirectionFigures, nominal: &NominalCircle) -> Result<Self> {
         let glitches = quadrant_glitches(nominal, &turn.counted, AFTER_REVERSAL);
@@ -380,98 +308,5 @@ impl Turned {
                 .map(Reversal::of)
                 .collect(),
         })
-    }
-}
-
-impl Both {
-    /// Of figures in m.
-    pub fn of(found: &CircleFigures) -> Self {
-        Self {
-            g_um: 1e6 * found.g_bidirectional,
-            h_um: 1e6 * found.h,
-            d_um: 1e6 * found.d,
-        }
-    }
-}
-
-impl Contoured<'_> {
-    /// What was run, in one line.
-    pub fn title(&self) -> String {
-        let reached = match self.fastest_m_per_min < REACHED * self.feed_m_per_min {
-            true => format!(
-                " (not reached: {:.1} m/min at most within acceleration and jerk)",
-                self.fastest_m_per_min
-            ),
-            false => String::new(),
-        };
-        format!(
-            "X {}, Y {}: circle of {} mm at {} m/min{reached}, compensation {} (simulated)",
-            self.x,
-            self.y,
-            self.radius_mm,
-            self.feed_m_per_min,
-            self.compensation.replace('_', "-")
-        )
-    }
-
-    /// The figures of both directions: name, clockwise, counterclockwise, µm.
-    pub fn rows(&self) -> [(&'static str, f64, f64); 4] {
-        let (a, b) = (&self.clockwise, &self.counterclockwise);
-        [
-            (
-                "contour error, greatest",
-                a.contour_error_um,
-                b.contour_error_um,
-            ),
-            ("circular deviation G", a.g_um, b.g_um),
-            ("radial deviation F max", a.f_max_um, b.f_max_um),
-            ("radial deviation F min", a.f_min_um, b.f_min_um),
-        ]
-    }
-
-    /// Those of both together.
-    pub fn together(&self) -> [(&'static str, f64); 3] {
-        let both = &self.both;
-        [
-            ("bidirectional circular deviation G(b)", both.g_um),
-            ("circular hysteresis H", both.h_um),
-            ("mean bidirectional radial deviation D", both.d_um),
-        ]
-    }
-}
-
-impl fmt::Display for Contoured<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}", self.title())?;
-        writeln!(
-            f,
-            "{:<40}{:>12}{:>20}",
-            "µm", "clockwise", "counterclockwise"
-        )?;
-        for (name, there, back) in self.rows() {
-            writeln!(f, "{name:<40}{there:>12.3}{back:>20.3}")?;
-        }
-        for (name, value) in self.together() {
-            writeln!(f, "{name:<40}{value:>12.3}")?;
-        }
-        let turns = [
-            ("clockwise", &self.clockwise),
-            ("counterclockwise", &self.counterclockwise),
-        ];
-        for (name, turn) in turns {
-            let mut peaks = String::new();
-            for r in &turn.reversals {
-                let _ = write!(
-                    peaks,
-                    "; {} at {:.0}°: {:.3} µm",
-                    r.axis, r.angle_deg, r.peak_um
-                );
-            }
-            writeln!(f, "after a reversal, {name}{}", peaks.replacen(';', ":", 1))?;
-        }
-        match self.report {
-            Some(path) => write!(f, "{}", path.display()),
-            None => Ok(()),
-        }
     }
 }

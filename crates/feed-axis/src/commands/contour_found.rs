@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 use toolpath::Foot;
 use toolpath::iso230_4::CircleFigures;
 
-use super::contour::{Both, Reversal};
 use super::contour_places::Place;
 
 /// One lap of a path.
@@ -311,3 +310,50 @@ impl fmt::Display for MachineContoured {
         }
     }
 }
+
+/// The peak after a reversal.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct Reversal {
+    /// X or Y.
+    pub axis: String,
+    /// Where the axis reverses, from +X towards +Y.
+    pub angle_deg: f64,
+    /// Radial deviation there, µm.
+    pub peak_um: f64,
+}
+
+impl Reversal {
+    /// Of a peak that was found.
+    pub fn of(glitch: &toolpath::iso230_4::QuadrantGlitch) -> Self {
+        Self {
+            axis: ["X", "Y"][glitch.axis.min(1)].to_owned(),
+            angle_deg: glitch.angle.to_degrees(),
+            peak_um: 1e6 * glitch.peak,
+        }
+    }
+}
+
+/// Both directions together.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct Both {
+    /// Bidirectional circular deviation G(b).
+    pub g_um: f64,
+    /// Circular hysteresis H.
+    pub h_um: f64,
+    /// Mean bidirectional radial deviation D.
+    pub d_um: f64,
+}
+
+impl Both {
+    /// Of figures in m.
+    pub fn of(found: &CircleFigures) -> Self {
+        Self {
+            g_um: 1e6 * found.g_bidirectional,
+            h_um: 1e6 * found.h,
+            d_um: 1e6 * found.d,
+        }
+    }
+}
+
+/// Window after a reversal in which its glitch is sought, rad.
+pub const AFTER_REVERSAL: f64 = 0.35;

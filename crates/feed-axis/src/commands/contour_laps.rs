@@ -10,10 +10,10 @@ use rayon::prelude::*;
 use toolpath::iso230_4::{CircleFigures, NominalCircle, figures, quadrant_glitches};
 use toolpath::named::Direction;
 
-use super::contour::{AFTER_REVERSAL, Both, Reversal};
 use super::contour_drives::{ContourError, DriveCompensations};
 use super::contour_found::{
-    Contoured, FeedRow, IdentifiedCoupling, LapFigures, MachineContoured, Shown,
+    AFTER_REVERSAL, Both, Contoured, FeedRow, IdentifiedCoupling, LapFigures, MachineContoured,
+    Reversal, Shown,
 };
 use super::contour_places::places;
 use super::contour_route::{Leg, PathChoice, Route, Wanted};

@@ -14,12 +14,13 @@ use discrepancy::{Evidence, Settings};
 use miette::{IntoDiagnostic, Report, Result, WrapErr, miette};
 use toml_edit::{DocumentMut, Item, Value};
 
+use super::discover_files::{AXIS, DISCOVERY, NEXT, REPORT};
 use super::discover_words::{Files, Found, FoundInSummary, summary_words};
 use super::motions::listed;
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
 use crate::file_set::FileSet;
 use crate::output::{Worded, note, print, ready};
-use crate::page;
+use crate::page::discovery as discovery_page;
 use crate::program;
 use crate::progress::{bar, spinner};
 use crate::shell;
@@ -132,7 +133,7 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
         let program = toml::to_string(&next.program).into_diagnostic()?;
         files.put(NEXT, program.as_bytes())?;
     }
-    files.put(REPORT, page::discovery::page(&discovered)?.as_bytes())?;
+    files.put(REPORT, discovery_page::page(&discovered)?.as_bytes())?;
     files.publish()?;
     let found = Found {
         discovery,
@@ -142,14 +143,6 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
     print("discover", &found)
 }
 
-/// What was found, and the axis file with it.
-pub(super) const DISCOVERY: &str = "discovery.json";
-pub(super) const AXIS: &str = "axis.toml";
-/// File of the proposed motion.
-pub(super) const NEXT: &str = "next-experiment.toml";
-/// What logs and what a table of errors show: in one folder, neither takes the other's
-/// place, nor that of `pipeline`'s summary.json.
-pub(super) const REPORT: &str = "report.html";
 const RANKING: &str = "ranking.json";
 const RANKING_REPORT: &str = "ranking.html";
 
@@ -298,7 +291,7 @@ fn from_summary(options: &Options, machine: &Axis, table: &Path, out: &Path) -> 
     progress.finish_and_clear();
     let json = serde_json::to_vec_pretty(&found).into_diagnostic()?;
     files.put(RANKING, &json)?;
-    let html = page::discovery::summary_page(axis, &found)?;
+    let html = discovery_page::summary_page(axis, &found)?;
     files.put(RANKING_REPORT, html.as_bytes())?;
     files.publish()?;
     let text = summary_words(axis, &found, measured.len());

@@ -9,7 +9,7 @@ use discrepancy::summary::SummaryFound;
 use discrepancy::{Discovery, Verdict};
 use serde::Serialize;
 
-use super::discover::{AXIS, DISCOVERY, NEXT, REPORT};
+use super::discover_files::{AXIS, DISCOVERY, NEXT, REPORT};
 
 /// What a search found, and where it is written.
 #[derive(Serialize)]

@@ -17,7 +17,7 @@ use super::discover::read_with;
 use crate::context::DEFAULT_AXIS;
 use crate::out_file;
 use crate::output::{Worded, note, print};
-use crate::page;
+use crate::page::frf as frf_page;
 use crate::set_key::SetKey;
 
 /// Frequencies of the table on the terminal, Hz.
@@ -73,7 +73,7 @@ pub fn command(options: &Options) -> Result<()> {
         text += &words(found);
     }
     if let Some(path) = &options.report {
-        let page = page::frf::page(&axis, &measurements);
+        let page = frf_page::page(&axis, &measurements);
         axis_report::write_atomic(path, &page).into_diagnostic()?;
         let _ = writeln!(text, "{}", path.display());
     }

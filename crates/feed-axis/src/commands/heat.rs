@@ -1,6 +1,6 @@
 //! `heat`: hours of a duty, what they warm, and how far the axis grows by that.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use axis_sim::mechanism::Freedom;
 use axis_sim::thermal::LossModel;
@@ -11,10 +11,11 @@ use compensator::NoCompensation;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use trajectories::{Motion, Program, Step};
 
+use super::heat_program::repeated;
 pub use super::heat_time::LONGEST;
 use super::heat_time::time;
 use super::heat_words::{Heated, HeatedNode, HeatedPlace};
-use super::motions::{listed, program_on};
+use super::motions::listed;
 use super::{heat_fit, heat_predict, heat_slow};
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
 use crate::exit::wrong_use;
@@ -351,41 +352,4 @@ impl HeatRun<'_> {
             report: None,
         }
     }
-}
-
-/// A program that can be repeated: it ends where it begins, and stays in the stroke.
-pub(super) fn repeated(file: &Path, axis: &Axis) -> Result<Program> {
-    let program = program_on(file, axis)?;
-    let (start, end) = (program.start(), program.end());
-    if (end - start).abs() > 1e-9 || program.duration() <= 0.0 {
-        let unit = axis.freedom().unit();
-        return Err(wrong_use(format!(
-            "--program: {} begins at {} {unit} and ends at {} {unit} after {} s; give one that takes \
-             some time and ends where it begins, for it is repeated",
-            file.display(),
-            SixDigits(start),
-            SixDigits(end),
-            SixDigits(program.duration())
-        )));
-    }
-    inside(&program, axis).wrap_err("--program")?;
-    Ok(program)
-}
-
-/// A program that leaves the stroke would heat places that the nut cannot be at.
-fn inside(program: &Program, axis: &Axis) -> Result<()> {
-    let (reached, stroke) = (program.extremes(), &axis.stroke);
-    let slack = 1e-9;
-    let from = reached.position_min >= stroke.minimum - slack;
-    if from && reached.position_max <= stroke.maximum + slack {
-        return Ok(());
-    }
-    Err(wrong_use(format!(
-        "the program reaches from {} to {} {unit}; give one from {} to {} {unit}, the stroke",
-        SixDigits(reached.position_min),
-        SixDigits(reached.position_max),
-        SixDigits(stroke.minimum),
-        SixDigits(stroke.maximum),
-        unit = axis.freedom().unit()
-    )))
 }

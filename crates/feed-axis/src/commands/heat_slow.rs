@@ -88,7 +88,7 @@ impl Options {
     /// The duties of the logs: those named, or `own` if there is one.
     pub(super) fn programs(&self, axis: &Axis, own: Option<Program>) -> Result<Vec<SharedMotion>> {
         let shared = |program| Arc::new(program) as SharedMotion;
-        let read = |file: &PathBuf| super::heat::repeated(file, axis).map(shared);
+        let read = |file: &PathBuf| super::heat_program::repeated(file, axis).map(shared);
         match self.duties.is_empty() {
             true => Ok(own.into_iter().map(shared).collect()),
             false => self.duties.iter().map(read).collect(),

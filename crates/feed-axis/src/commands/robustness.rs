@@ -16,7 +16,7 @@ use crate::context::{Claim, Common, Context};
 use crate::file_set::FileSet;
 use crate::jobs::{JobOptions, Sharding, failure};
 use crate::output::{Worded, print};
-use crate::page;
+use crate::page::robustness as robustness_page;
 use crate::page::robustness::{Asked, Limit, Robustness, Row};
 
 /// The table, and its page.
@@ -117,7 +117,7 @@ impl AllDraws {
         let json = serde_json::to_vec_pretty(&table).into_diagnostic()?;
         files.put(TABLE, &json)?;
         let title = format!("Compensation of {}", table.axis);
-        let page = Page::new(title).section(page::robustness::robustness(&table));
+        let page = Page::new(title).section(robustness_page::robustness(&table));
         let page = render(&page)
             .into_diagnostic()
             .wrap_err("the page cannot be made")?;

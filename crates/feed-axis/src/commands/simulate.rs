@@ -14,6 +14,7 @@ use axis_sim::{
     excitation_channel,
 };
 use clap::Args;
+use compensator::Compensator;
 use discover_matrix::hidden::{MACHINE_STEP, Noise};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::Serialize;
@@ -74,25 +75,7 @@ pub fn command(options: &Options) -> Result<()> {
     if let Some(samples) = excitation {
         closed_loop = closed_loop.with_excitation(samples);
     }
-    let strategy = options.compensation;
-    let predictors = validate::predictors(&context, strategy.needs)?;
-    if options.correction.is_some() && matches!(strategy.build, Build::Each(_)) {
-        return Err(wrong_use(format!(
-            "--correction: {} does not know a motion ahead; give a --compensation that plans, such as plan",
-            strategy.label
-        )));
-    }
-    let learned = match &options.correction {
-        Some(file) => Some(Arc::new(learn::correction(file, &context.axis, &*motion)?)),
-        None => None,
-    };
-    let mut law = strategy.strategy(&predictors).into_diagnostic()?;
-    let next = NextMove {
-        motion: motion.clone(),
-        continued: None,
-        learned,
-    };
-    let mut law = law.compensator(&next).into_diagnostic()?;
+    let mut law = compensator(options, &context, &motion)?;
     let log = options.log.as_deref();
     let mut rows = log
         .map(|path| begun(path, &context.axis, is_excited))
@@ -141,25 +124,7 @@ pub fn command(options: &Options) -> Result<()> {
     if let (Some(path), Some(shown)) = (&options.report, &shown) {
         write_page(path, options, &context, shown, stopped.as_ref())?;
     }
-    let axis = &context.axis;
-    let figures = Figures {
-        max: 1e6 * tracking.most,
-        mean: 1e6 * tracking.sum / tracking.cycles as f64,
-    };
-    print(
-        "simulate",
-        &Simulated {
-            axis: &axis.name,
-            axis_fingerprint: &axis.fingerprint,
-            compensation: strategy.name,
-            duration_s: motion.duration(),
-            cycles: tracking.cycles,
-            tracking_error: Errors::new(context.unit(), figures),
-            stopped: stopped.map(|why| why.to_string()),
-            log: options.log.as_deref(),
-            report: options.report.as_deref(),
-        },
-    )?;
+    print_found(options, &context, &motion, &tracking, stopped.as_ref())?;
     // No motion that an axis can follow is at a limit for most of its time.
     if 2 * tracking.limited > tracking.cycles {
         note(format!(
@@ -171,6 +136,62 @@ pub fn command(options: &Options) -> Result<()> {
         Some(stopped) => Err(stopped).into_diagnostic(),
         None => Ok(()),
     }
+}
+
+/// The strategy that was asked for, with the motion ahead and what was learned of it.
+fn compensator(
+    options: &Options,
+    context: &Context,
+    motion: &SharedMotion,
+) -> Result<Box<dyn Compensator + Send>> {
+    let strategy = options.compensation;
+    let predictors = validate::predictors(context, strategy.needs)?;
+    if options.correction.is_some() && matches!(strategy.build, Build::Each(_)) {
+        return Err(wrong_use(format!(
+            "--correction: {} does not know a motion ahead; give a --compensation that plans, such as plan",
+            strategy.label
+        )));
+    }
+    let learned = match &options.correction {
+        Some(file) => Some(Arc::new(learn::correction(file, &context.axis, &**motion)?)),
+        None => None,
+    };
+    let mut law = strategy.strategy(&predictors).into_diagnostic()?;
+    let next = NextMove {
+        motion: motion.clone(),
+        continued: None,
+        learned,
+    };
+    law.compensator(&next).into_diagnostic()
+}
+
+/// What the run showed, as the command's result.
+fn print_found(
+    options: &Options,
+    context: &Context,
+    motion: &SharedMotion,
+    tracking: &Tracking,
+    stopped: Option<&RunStopped>,
+) -> Result<()> {
+    let axis = &context.axis;
+    let figures = Figures {
+        max: 1e6 * tracking.most,
+        mean: 1e6 * tracking.sum / tracking.cycles as f64,
+    };
+    print(
+        "simulate",
+        &Simulated {
+            axis: &axis.name,
+            axis_fingerprint: &axis.fingerprint,
+            compensation: options.compensation.name,
+            duration_s: motion.duration(),
+            cycles: tracking.cycles,
+            tracking_error: Errors::new(context.unit(), figures),
+            stopped: stopped.map(ToString::to_string),
+            log: options.log.as_deref(),
+            report: options.report.as_deref(),
+        },
+    )
 }
 
 /// Asks whether the page can be written, before the work that makes it.

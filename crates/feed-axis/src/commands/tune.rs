@@ -11,14 +11,15 @@ use miette::{IntoDiagnostic, Result};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::analyse::{Ranges, axis_with, place};
+use super::analyse::{Ranges, axis_with};
 use super::control_table::with_tuned;
 use super::discover::moved;
 use super::frf;
 use crate::context::{DEFAULT_AXIS, read_text};
 use crate::out_file;
 use crate::output::{Worded, print, ready, write_whole};
-use crate::page;
+use crate::page::loops as loops_page;
+use crate::page::loops::place;
 use crate::set_key::{SetKey, with_keys};
 
 /// Options of `tune`.
@@ -238,12 +239,12 @@ fn report_page(found: &TuneFound, loops: &LoopAnalysis) -> Page {
     let section = lines(&found.tuning)
         .into_iter()
         .fold(section, |section, line| {
-            section.paragraph(page::loops::sentence(&line))
+            section.paragraph(loops_page::sentence(&line))
         });
     let page = Page::new(format!("{}, tuned", found.tuning.axis))
         .lead("Gains within limits of the sensitivity over stroke, mass and one more cycle of delay. Computed and simulated, not measured.")
         .section(section);
-    page::loops::sections(loops)
+    loops_page::sections(loops)
         .into_iter()
         .fold(page, |page, section| page.section(section))
 }

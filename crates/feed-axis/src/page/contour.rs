@@ -3,7 +3,7 @@
 use axis_report::{Cell, Figure, Page, Section, Series, Table};
 use toolpath::iso230_4::NominalCircle;
 
-use crate::commands::contour::Contoured;
+use crate::commands::contour_circle::Contoured;
 
 /// Points of a line in a figure at most: more than a screen has.
 const MOST_POINTS: usize = 2000;

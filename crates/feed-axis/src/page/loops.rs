@@ -1,9 +1,9 @@
 //! The page of the drive's loops: margins, Bode's and Nyquist's plots, sensitivities, compliance.
 
 use axis_report::{Cell, Figure, Mark, Notice, Page, Section, Series, Table};
+use axis_sim::SixDigits;
 use drive_loop::{CornerMargins, LoopAnalysis, LoopCurves};
 
-use crate::commands::analyse::{compliance_unit, place};
 use crate::context::Context;
 use crate::program;
 use crate::results::Loops;
@@ -291,4 +291,24 @@ fn compliance(found: &LoopAnalysis) -> Section {
     Section::new("Compliance")
         .paragraph("How far the load gives way to a force on it, the loops closed.")
         .figure(figure)
+}
+
+/// A corner in words.
+pub fn place(at: &drive_loop::Corner, unit: &str) -> String {
+    let state = if at.stuck { "stuck" } else { "sliding" };
+    let mut text = format!("{state} at {} {unit}", SixDigits(at.position));
+    for (what, share) in [("mass", at.mass), ("friction", at.friction)] {
+        if share != 1.0 {
+            text += &format!(", {what} × {}", SixDigits(share));
+        }
+    }
+    text
+}
+
+/// m/N or rad/(N·m).
+pub fn compliance_unit(found: &LoopAnalysis) -> String {
+    match found.force_unit.as_str() {
+        "N" => format!("{}/N", found.position_unit),
+        other => format!("{}/({other})", found.position_unit),
+    }
 }

@@ -4,12 +4,24 @@ use axis_pipeline::vibration::Vibration;
 use axis_report::{Cell, Figure, Section, Series, Table};
 use lugre::LuGre;
 
+use crate::commands::identify::Friction;
 use crate::context::Context;
 use crate::results::Results;
 
 /// Identification: parameters and curve.
 pub fn friction(context: &Context, results: &Results) -> Section {
     let friction = &results.friction;
+    let section = Section::new("Friction")
+        .paragraph("From stretches of constant speed both ways and small motions about a standstill, as the sensors log them. Runs in which the axis vibrates by itself are recognised by their own speed and left out: their mean torque is not a point of the curve. Intervals hold what the logs scatter; the torque constant of the axis file scales all forces with it.");
+    let lines = friction.open.iter().chain(&friction.notes);
+    lines
+        .fold(section, |section, line| section.paragraph(line.clone()))
+        .table(friction_table(friction))
+        .figure(friction_figure(context, results))
+}
+
+/// What was found, beside what is true if that is known.
+fn friction_table(friction: &Friction) -> Table {
     let of = match friction.simulated {
         true => "Friction as identified on the simulated machine",
         false => "Friction as identified from logs",
@@ -42,6 +54,11 @@ pub fn friction(context: &Context, results: &Results) -> Section {
             off,
         ]);
     }
+    table
+}
+
+/// The curve, with the runs that it was found from.
+fn friction_figure(context: &Context, results: &Results) -> Figure {
     let runs = |name: &str, left_out: bool| {
         let forward = results.friction.runs.iter().filter(|run| run.speed > 0.0);
         let (x, y): (Vec<f64>, Vec<f64>) = forward
@@ -78,7 +95,7 @@ pub fn friction(context: &Context, results: &Results) -> Section {
     .series(Series::line("identified", speeds.clone(), curve(&results.friction_law)).dashed())
     .log_x()
     .alt("Steady-state friction torque against speed");
-    if friction.simulated {
+    if results.friction.simulated {
         let machine = curve(&context.machine.friction.law);
         figure = figure.series(Series::line("machine", speeds.clone(), machine));
     }
@@ -86,13 +103,7 @@ pub fn friction(context: &Context, results: &Results) -> Section {
     for series in dots.into_iter().flatten() {
         figure = figure.series(series);
     }
-    let section = Section::new("Friction")
-        .paragraph("From stretches of constant speed both ways and small motions about a standstill, as the sensors log them. Runs in which the axis vibrates by itself are recognised by their own speed and left out: their mean torque is not a point of the curve. Intervals hold what the logs scatter; the torque constant of the axis file scales all forces with it.");
-    let lines = friction.open.iter().chain(&friction.notes);
-    lines
-        .fold(section, |section, line| section.paragraph(line.clone()))
-        .table(table)
-        .figure(figure)
+    figure
 }
 
 /// Constant-speed runs.

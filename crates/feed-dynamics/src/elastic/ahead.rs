@@ -1,84 +1,10 @@
 //! The end of a step of the elastic drive, as far as its load is known.
 
 use super::course::Course;
-use super::stepper::{ElasticState, ElasticStepper};
+use super::prepared::{ElasticState, ElasticStepper};
+use super::transmission::Share;
 use crate::NutErrors;
 use crate::stepper::Contact;
-
-/// What the transmission's force at the end of a step does over it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Share {
-    /// Travel for a unit of acceleration, s².
-    travel: f64,
-    /// Speed for a unit of acceleration, s.
-    speed: f64,
-    /// Part of the force at the step's start that acts too.
-    start: f64,
-}
-
-impl Share {
-    /// The force of start and end, half of a step of `h` seconds each.
-    #[inline]
-    pub fn average(h: f64) -> Self {
-        Self {
-            travel: 0.25 * h * h,
-            speed: 0.5 * h,
-            start: 1.0,
-        }
-    }
-
-    /// The force of the end over a whole step of `h` seconds.
-    #[inline]
-    pub fn implicit(h: f64) -> Self {
-        Self {
-            travel: h * h,
-            speed: h,
-            start: 0.0,
-        }
-    }
-}
-
-/// The transmission where its stiffness is known.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Transmission {
-    /// k, N/m.
-    stiffness: f64,
-    /// βk, N·s/m.
-    damping: f64,
-    /// Without a gap, over a step with the force of both ends: what is left of a force once
-    /// it has moved both sides, and the force that a newton of load brings about.
-    left: f64,
-    per_load: f64,
-}
-
-impl Transmission {
-    #[inline]
-    pub fn new(stepper: &ElasticStepper, stiffness: f64) -> Self {
-        let (h, mobility) = (stepper.step, stepper.mobility);
-        let damping = stiffness * stepper.drive.parameters().stiffness_damping;
-        let share = Share::average(h);
-        let own = stiffness * share.travel + damping * share.speed;
-        let left = 1.0 / (1.0 + own * mobility);
-        Self {
-            stiffness,
-            damping,
-            left,
-            per_load: left * own * stepper.load_mobility,
-        }
-    }
-
-    /// As a contact with a gap or without.
-    #[inline]
-    fn contact(&self, mobility: f64, share: Share, half_gap: f64) -> Contact {
-        Contact {
-            stiffness: self.stiffness,
-            damping: self.damping,
-            travel: share.travel * mobility,
-            speed: share.speed * mobility,
-            half_gap,
-        }
-    }
-}
 
 /// What start and torque of a step tell of its end: load and force are left.
 pub(super) struct Ahead<'a> {
@@ -116,7 +42,7 @@ impl<'a> Ahead<'a> {
             Some(transmission) => transmission,
             None => {
                 let stiffness = &stepper.drive.parameters().stiffness;
-                Transmission::new(stepper, stiffness.at(start.origin + y.value))
+                stepper.transmission(stiffness.at(start.origin + y.value))
             }
         };
         let (offset, rate) = (errors.offset(), errors.offset_rate());

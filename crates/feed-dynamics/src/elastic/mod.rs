@@ -2,12 +2,14 @@
 
 mod ahead;
 mod course;
+mod prepared;
 mod response;
 mod stepper;
 mod stiffness;
+mod transmission;
 
+pub use prepared::{ElasticState, ElasticStepper};
 pub use response::Side;
-pub use stepper::{ElasticState, ElasticStepper};
 pub use stiffness::{BeltStrands, InSeries, Stiffness};
 
 use std::sync::Arc;

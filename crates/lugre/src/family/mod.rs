@@ -1,6 +1,7 @@
 //! A family of friction laws behind one trait.
 
 mod bristle;
+mod classic_bouc_wen;
 mod error;
 mod lugre;
 mod maxwell;
@@ -13,9 +14,10 @@ use core::fmt::Debug;
 use axis_scalar::Scalar;
 
 pub use bristle::{BoucWen, Bristle, BristleParameters, Dahl, ElastoPlastic, GeneralLuGre};
+pub use classic_bouc_wen::ClassicBoucWen;
 pub use error::FrictionError;
 pub use maxwell::{MaxwellSlip, MaxwellSlipParameters, MaxwellState};
-pub use onset::{BoucWenOnset, ClassicBoucWen, DahlOnset, ElastoPlasticOnset, LinearOnset, Onset};
+pub use onset::{BoucWenOnset, DahlOnset, ElastoPlasticOnset, LinearOnset, Onset};
 pub use statics::{Regularisation, StaticFriction, StaticFrictionParameters};
 pub use steady::{FrictionLevel, SteadyState};
 

@@ -11,8 +11,8 @@ use crate::log::TIME_CHANNEL;
 use crate::numeric::grid::Grid;
 use crate::numeric::order::median;
 use crate::quality::{MAX_RATE_HZ, MIN_RATE_HZ, rate_of};
-use crate::source_unit::size_of;
 use crate::table::{Holes, Table};
+use crate::unit_table::size_of;
 
 /// What was found beside the units.
 #[derive(Default)]

@@ -8,8 +8,8 @@ use super::column;
 use crate::numeric::align::{Free, align, integral};
 use crate::numeric::holes::{bridge, runs};
 use crate::numeric::wrap::{unwrap, wrap};
-use crate::source_unit::{known, size_of};
 use crate::table::Table;
+use crate::unit_table::{known, size_of};
 
 /// Positions and the speeds that are their derivatives.
 const PAIRS: [(&str, &str); 6] = [

@@ -3,7 +3,7 @@
 //! How many fields there are the rows tell, and how they belong together a line of the header of
 //! which no field has a blank, as that of the symbols.
 
-use super::header::KEYS;
+use super::keys::KEYS;
 use super::line::NAME;
 use super::number::value;
 

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::super::names::distinct;
 use super::blanks;
+use super::keys::{KEYS, SYMBOL};
 use super::line::{NAME, fields, key, separator};
 use super::number::decimal;
 use super::refused;
@@ -15,29 +16,6 @@ use crate::read_error::ReadProblem;
 /// Lines in which a header ends.
 const MOST_LINES: usize = 1000;
 const BLANKS: &str = "spaces separate the fields and also stand in names, so that fields cannot be separated: export with a tab or \";\"";
-
-const SYMBOL: &str = "SymbolName";
-/// Keys of the other lines that a header may have.
-pub(super) const KEYS: &[&str] = &[
-    SYMBOL,
-    "SymbolComment",
-    "Data-Type",
-    "SampleTime",
-    "SampleTime[ms]",
-    "VariableSize",
-    "SymbolBased",
-    "IndexGroup",
-    "IndexOffset",
-    "NetID",
-    "NetId",
-    "Port",
-    "Offset",
-    "ScaleFactor",
-    "BitMask",
-    "Unit",
-    "Unit ScaleFactor",
-    "Unit Offset",
-];
 
 /// What the header tells of the values.
 pub(super) struct Header<'a> {

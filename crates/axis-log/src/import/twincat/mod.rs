@@ -31,6 +31,7 @@
 mod blanks;
 mod clock;
 mod header;
+mod keys;
 mod line;
 mod number;
 mod proposal;

@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::axis::ValueRange;
 use crate::part::{Key, Kind};
+use crate::value_range::ValueRange;
 
 /// Significant digits of a limit: the reader takes what is 1e-12 of it beyond, and a limit in
 /// a unit should not end in the rounding of its conversion.

@@ -12,11 +12,12 @@ mod tests;
 
 use serde_json::{Map, Value, json};
 
+use super::first_keys::{SHORT_KINDS, loop_keys};
 use super::keys::keys;
-use super::layout::{Layout, SHORT_KINDS};
+use super::layout::Layout;
 use super::registry::Registry;
 use crate::actuator::Effort;
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 use crate::part::{Key, PartKind};
 use crate::rating::rating_keys;
 use crate::thermal::THERMAL_KEYS;
@@ -97,7 +98,7 @@ impl Registry {
                     "stroke": reference(&of_freedom("stroke", freedom)),
                     "balance": reference(&of_freedom("balance", freedom)),
                     "trajectory": list(reference(&of_freedom("trajectory", freedom))),
-                    "control": without(&super::keys::loop_keys(other), &super::keys::loop_keys(freedom)),
+                    "control": without(&loop_keys(other), &loop_keys(freedom)),
                 } },
             }));
             for effort in EFFORTS {

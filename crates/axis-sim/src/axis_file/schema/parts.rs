@@ -2,13 +2,14 @@
 
 use serde_json::{Map, Value, json};
 
-use super::super::keys::{SHARE, loop_keys};
+use super::super::first_keys::loop_keys;
+use super::super::keys::SHARE;
 use super::super::layout::kinds_key;
 use super::super::registry::Registry;
 use super::key::{closed, properties};
 use super::reference;
 use crate::effects::Effect;
-use crate::mechanism::Freedom;
+use crate::freedom::Freedom;
 use crate::part::{Key, Known, PartKind, number, text_of};
 
 /// The tables whose presence tells that a file has a section for each part.

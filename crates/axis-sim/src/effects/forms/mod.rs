@@ -15,7 +15,7 @@ mod exponent;
 mod onset;
 mod smooth;
 
-use super::changes::Hooks;
+use super::hooks::Hooks;
 use super::{ActiveEffect, Changes, EFFECTS, Effect, EffectParameter, Measure, Nature};
 use crate::error::SetupError;
 use crate::part::PartError;
@@ -134,9 +134,9 @@ fn hooks_of(values: &[f64], to: &Changes<'_>) -> Result<Hooks, SetupError> {
         return Err(PartError::of("value", "names no effect", "the place of an effect").into());
     };
     let mut hooks = Hooks::default();
-    let mut axis = to.axis.clone();
+    let mut axis = to.axis.copy();
     let mut changes = Changes {
-        axis: &mut axis,
+        axis: &mut *axis,
         hooks: &mut hooks,
     };
     (base.effect.install)(&base.values, &mut changes)?;

@@ -88,207 +88,14 @@ impl SampledDrive {
         speed_by_differences: bool,
         at: &DriveSituation,
     ) -> Self {
-        let n = modes.len();
-        let (constant, h, limit) = (model.torque_constant(), model.period, model.effort_limit);
-        let cycles = model.delay / h;
-        let whole = cycles as usize;
-        let part = cycles - whole as f64;
-        let late = whole + usize::from(part > 0.0);
-        let (inner, held) = match &model.drive {
-            Drive::FieldOriented { .. } => (1, 1),
-            Drive::Lag { bandwidth, .. } => (usize::from(bandwidth.is_finite()), 0),
-        };
-        let angles = usize::from(speed_by_differences);
-        // Voltages under way: whole periods, and the part of one more.
-        let v_late = model.drive.late();
-        let (v_whole, v_part) = (v_late as usize, v_late - (v_late as usize) as f64);
-        let under_way = v_whole + usize::from(v_part > 0.0);
-        let size = 2 * n + inner + held + under_way + late + angles + 1;
-        let flow = 2 * n + inner;
-        let motor = DVector::from_iterator(n, modes.iter().map(|m| m.motor));
-        let load = DVector::from_iterator(n, modes.iter().map(|m| m.load));
-        // Units: what the greatest torque moves in a cycle.
-        let push = constant * limit * modes[0].motor.abs() * h * h;
-        let force = constant * limit / model.travel;
-        let mut units = DVector::from_element(size, limit);
-        units.rows_mut(0, n).fill(push);
-        units.rows_mut(n, n).fill(push / h);
-        units[size - 1] = force;
-
-        // Continuous: mechanics and current, with inputs v (or command) and d.
-        let extra = model.load_inertia * (at.mass - 1.0);
-        let share = extra / (1.0 + extra * load.dot(&load));
-        let per_mass = DMatrix::identity(n, n) - &load * load.transpose() * share;
-        let p = model.friction.parameters();
-        let lever = model.lever * model.lever;
-        let stuck = at.sticking * at.bristles;
-        let spring = at.friction * p.stiffness * stuck / lever;
-        let damping = at.friction * (p.viscous + p.damping * stuck) / lever
-            + at.sliding * (1.0 - at.sticking);
-        let own = |f: fn(&Mode) -> f64| {
-            DMatrix::from_diagonal(&DVector::from_iterator(n, modes.iter().map(f)))
-        };
-        let outer = &load * load.transpose();
-        let stiff = own(|m| m.frequency * m.frequency) + &outer * spring;
-        let damp = own(|m| m.damping) + &outer * damping;
-        let mut ac = DMatrix::zeros(flow + 2, flow + 2);
-        ac.view_mut((0, n), (n, n)).fill_with_identity();
-        ac.view_mut((n, 0), (n, n)).copy_from(&-(&per_mass * stiff));
-        ac.view_mut((n, n), (n, n)).copy_from(&-(&per_mass * damp));
-        let torque = &per_mass * &motor * constant;
-        let (at_v, at_d) = (flow, flow + 1);
-        ac.view_mut((n, at_d), (n, 1))
-            .copy_from(&-(&per_mass * &load));
-        let mut pi = [0.0; 2];
-        match &model.drive {
-            Drive::FieldOriented {
-                motor: m, gear, q, ..
-            } => {
-                let e = m.parameters();
-                let i = 2 * n;
-                ac.view_mut((n, i), (n, 1)).copy_from(&torque);
-                ac[(i, i)] = -e.resistance / e.inductance_q;
-                ac[(i, at_v)] = 1.0 / e.inductance_q;
-                let induced = m.electrical_speed(*gear) * e.flux_linkage / e.inductance_q;
-                for (j, shape) in motor.iter().enumerate() {
-                    ac[(i, n + j)] = -induced * shape;
-                }
-                pi = [q[0] + q[1] * h, q[1] * h];
-            }
-            Drive::Lag { bandwidth, .. } if inner == 1 => {
-                let i = 2 * n;
-                ac.view_mut((n, i), (n, 1)).copy_from(&torque);
-                ac[(i, i)] = -bandwidth;
-                ac[(i, at_v)] = *bandwidth;
-            }
-            Drive::Lag { .. } => ac.view_mut((n, at_v), (n, 1)).copy_from(&torque),
-        }
-        // In its own units, where no entry is far from the others.
-        let unit = |i: usize| match i {
-            i if i == at_v => limit,
-            i if i == at_d => force,
-            i => units[i],
-        };
-        let ac = DMatrix::from_fn(flow + 2, flow + 2, |i, j| {
-            ac[(i, j)] * h * unit(j) / unit(i)
-        });
-        let ad = ac.exp();
-        // Of two voltages in a period the newer acts in the rest of it.
-        let rest = match v_part > 0.0 {
-            true => (&ac * (1.0 - v_part)).exp(),
-            false => ad.clone(),
-        };
-
-        let mut a = DMatrix::zeros(size, size);
-        let mut b = DVector::zeros(size);
-        a.view_mut((0, 0), (flow, flow))
-            .copy_from(&ad.view((0, 0), (flow, flow)));
-        a.view_mut((0, size - 1), (flow, 1))
-            .copy_from(&ad.view((0, at_d), (flow, 1)));
-        a[(size - 1, size - 1)] = 1.0;
-        let newer = DVector::from_fn(size, |i, _| if i < flow { rest[(i, at_v)] } else { 0.0 });
-        let older = DVector::from_fn(size, |i, _| match i < flow {
-            true => ad[(i, at_v)] - rest[(i, at_v)],
-            false => 0.0,
-        });
-        // v(k − j): of the voltages under way, or the one that is made now.
-        let voltages = flow + held;
-        let mut into = DVector::zeros(size);
-        let mut acts_after = |j: usize, on: &DVector<f64>| match j {
-            0 => into += on,
-            j => {
-                let column = a.column(voltages + j - 1) + on;
-                a.set_column(voltages + j - 1, &column);
-            }
-        };
-        acts_after(v_whole, &newer);
-        if v_part > 0.0 {
-            acts_after(v_whole + 1, &older);
-        }
-        for j in 0..under_way {
-            match j {
-                0 => into[voltages] = 1.0,
-                j => a[(voltages + j, voltages + j - 1)] = 1.0,
-            }
-        }
-        // What the late command does: through the PI, or at once.
-        let mut acts = into.clone();
-        if held == 1 {
-            let (i, w) = (flow - 1, flow);
-            acts = &into * pi[0];
-            acts[w] = pi[1];
-            let from_current = a.column(i) - &acts;
-            a.set_column(i, &from_current);
-            a.set_column(w, &into);
-            a[(w, w)] = 1.0;
-        }
-        // u(k − j): the j-th past command, or the one that is made now.
-        let past = flow + held + under_way;
-        let mut late_by = |j: usize, weight: f64| match j {
-            0 => b += &acts * weight,
-            j => {
-                let column = a.column(past + j - 1) + &acts * weight;
-                a.set_column(past + j - 1, &column);
-            }
-        };
-        late_by(whole, 1.0 - part);
-        if part > 0.0 {
-            late_by(whole + 1, part);
-        }
-        for j in 0..late {
-            match j {
-                0 => b[past] = 1.0,
-                j => a[(past + j, past + j - 1)] = 1.0,
-            }
-        }
-
-        if angles == 1 {
-            units[past + late] = push / motor[0].abs();
-        }
-        let row = |values: &DVector<f64>, from: usize| {
-            RowDVector::from_fn(size, |_, j| {
-                let inside = (from..from + n).contains(&j);
-                if inside {
-                    values[j - from] * units[j]
-                } else {
-                    0.0
-                }
-            })
-        };
-        let (load_at, load_speed) = (row(&load, 0), row(&load, n));
-        let position = match model.cascade.from_motor {
-            true => row(&motor, 0) * model.travel,
-            false => load_at.clone(),
-        };
-        let mut speed = row(&motor, n);
-        if angles == 1 {
-            // A state for the motor's angle a cycle ago, in units of the modes' own.
-            let (before, now) = (past + late, row(&motor, 0));
-            a.row_mut(before).copy_from(&(&now / units[before]));
-            speed = now / h;
-            speed[before] = -units[before] / h;
-        }
-        let weighed = match model.cascade.from_motor {
-            true => [row(&motor, 0), row(&motor, n)].map(|row| row * model.travel),
-            false => [load_at.clone(), load_speed.clone()],
-        };
-        let mut rows = vec![position, speed];
-        if held == 1 {
-            rows.push(RowDVector::from_fn(size, |_, j| {
-                if j == 2 * n { limit } else { 0.0 }
-            }));
-        }
-        Self {
-            a,
-            b,
-            c: DMatrix::from_rows(&rows),
-            weighed,
-            load: load_at,
-            load_speed,
-            motor: row(&motor, 0),
-            motor_speed: row(&motor, n),
-            units,
-        }
+        let places = Places::of(model, modes.len(), speed_by_differences);
+        let units = places.units(model, modes);
+        let flow = in_units(&continuous(model, modes, at, &places), model, &units);
+        let mut a = DMatrix::zeros(places.size(), places.size());
+        let into = hold_voltages(&mut a, &flow, &places, model.drive.late());
+        let acts = control_current(&mut a, into, &places, model);
+        let b = hold_commands(&mut a, &acts, &places, model.delay / model.period);
+        places.shown(a, b, units, model, modes)
     }
 
     /// Number of states.
@@ -306,4 +113,315 @@ impl SampledDrive {
             _ => Ok(self),
         }
     }
+}
+
+/// Where the states of a sampled drive stand: positions and speeds of the modes, the actuator's own state, the current
+/// controller's integral, voltages and commands under way, the motor's angle a cycle ago, the force on the load.
+#[derive(Clone, Copy)]
+struct Places {
+    modes: usize,
+    /// 1 where the actuator has a state: its current, or its torque behind a lag.
+    inner: usize,
+    /// 1 where a current controller has an integral.
+    held: usize,
+    /// Voltages under way: whole periods, and the part of one more.
+    under_way: usize,
+    /// Commands under way.
+    late: usize,
+    /// 1 where the speed is a difference of angles.
+    angles: usize,
+}
+
+impl Places {
+    fn of(model: &DriveModel, modes: usize, speed_by_differences: bool) -> Self {
+        let (inner, held) = match &model.drive {
+            Drive::FieldOriented { .. } => (1, 1),
+            Drive::Lag { bandwidth, .. } => (usize::from(bandwidth.is_finite()), 0),
+        };
+        let periods = |late: f64| {
+            let [whole, part] = whole_and_part(late);
+            whole as usize + usize::from(part > 0.0)
+        };
+        Self {
+            modes,
+            inner,
+            held,
+            under_way: periods(model.drive.late()),
+            late: periods(model.delay / model.period),
+            angles: usize::from(speed_by_differences),
+        }
+    }
+
+    /// States that flow between samples.
+    fn flow(&self) -> usize {
+        2 * self.modes + self.inner
+    }
+
+    /// The first voltage under way.
+    fn voltages(&self) -> usize {
+        self.flow() + self.held
+    }
+
+    /// The first command under way.
+    fn past(&self) -> usize {
+        self.voltages() + self.under_way
+    }
+
+    /// The motor's angle a cycle ago.
+    fn before(&self) -> usize {
+        self.past() + self.late
+    }
+
+    fn size(&self) -> usize {
+        self.before() + self.angles + 1
+    }
+
+    /// What one unit of each state is in SI: of motion what the greatest torque moves in a cycle.
+    fn units(&self, model: &DriveModel, modes: &[Mode]) -> DVector<f64> {
+        let (h, limit, n) = (model.period, model.effort_limit, self.modes);
+        let push = model.torque_constant() * limit * modes[0].motor.abs() * h * h;
+        let mut units = DVector::from_element(self.size(), limit);
+        units.rows_mut(0, n).fill(push);
+        units.rows_mut(n, n).fill(push / h);
+        if self.angles == 1 {
+            units[self.before()] = push / modes[0].motor.abs();
+        }
+        units[self.size() - 1] = greatest_force(model);
+        units
+    }
+
+    /// The drive of A and B with what is measured and weighed of its states.
+    fn shown(
+        &self,
+        mut a: DMatrix<f64>,
+        b: DVector<f64>,
+        units: DVector<f64>,
+        model: &DriveModel,
+        modes: &[Mode],
+    ) -> SampledDrive {
+        let (n, size, h) = (self.modes, self.size(), model.period);
+        let row = |value: fn(&Mode) -> f64, from: usize| {
+            RowDVector::from_fn(size, |_, j| {
+                let inside = (from..from + n).contains(&j);
+                if inside {
+                    value(&modes[j - from]) * units[j]
+                } else {
+                    0.0
+                }
+            })
+        };
+        let (motor, load) = (|from| row(|m| m.motor, from), |from| row(|m| m.load, from));
+        let position = match model.cascade.from_motor {
+            true => motor(0) * model.travel,
+            false => load(0),
+        };
+        let mut speed = motor(n);
+        if self.angles == 1 {
+            // A state for the motor's angle a cycle ago, in units of the modes' own.
+            let (before, now) = (self.before(), motor(0));
+            a.row_mut(before).copy_from(&(&now / units[before]));
+            speed = now / h;
+            speed[before] = -units[before] / h;
+        }
+        let weighed = match model.cascade.from_motor {
+            true => [motor(0), motor(n)].map(|row| row * model.travel),
+            false => [load(0), load(n)],
+        };
+        let mut rows = vec![position, speed];
+        if self.held == 1 {
+            rows.push(RowDVector::from_fn(size, |_, j| {
+                if j == 2 * n { model.effort_limit } else { 0.0 }
+            }));
+        }
+        SampledDrive {
+            a,
+            b,
+            c: DMatrix::from_rows(&rows),
+            weighed,
+            load: load(0),
+            load_speed: load(n),
+            motor: motor(0),
+            motor_speed: motor(n),
+            units,
+        }
+    }
+}
+
+/// Whole periods of a delay, and the part of one more.
+fn whole_and_part(late: f64) -> [f64; 2] {
+    let whole = (late as usize) as f64;
+    [whole, late - whole]
+}
+
+/// Of the actuator at the load, N or N·m.
+fn greatest_force(model: &DriveModel) -> f64 {
+    model.torque_constant() * model.effort_limit / model.travel
+}
+
+/// Continuous: mechanics and current, with the inputs v (or the command) and d.
+fn continuous(
+    model: &DriveModel,
+    modes: &[Mode],
+    at: &DriveSituation,
+    places: &Places,
+) -> DMatrix<f64> {
+    let (n, flow) = (places.modes, places.flow());
+    let motor = DVector::from_iterator(n, modes.iter().map(|m| m.motor));
+    let load = DVector::from_iterator(n, modes.iter().map(|m| m.load));
+    let extra = model.load_inertia * (at.mass - 1.0);
+    let share = extra / (1.0 + extra * load.dot(&load));
+    let per_mass = DMatrix::identity(n, n) - &load * load.transpose() * share;
+    let p = model.friction.parameters();
+    let lever = model.lever * model.lever;
+    let stuck = at.sticking * at.bristles;
+    let spring = at.friction * p.stiffness * stuck / lever;
+    let damping =
+        at.friction * (p.viscous + p.damping * stuck) / lever + at.sliding * (1.0 - at.sticking);
+    let own = |f: fn(&Mode) -> f64| {
+        DMatrix::from_diagonal(&DVector::from_iterator(n, modes.iter().map(f)))
+    };
+    let outer = &load * load.transpose();
+    let stiff = own(|m| m.frequency * m.frequency) + &outer * spring;
+    let damp = own(|m| m.damping) + &outer * damping;
+    let mut ac = DMatrix::zeros(flow + 2, flow + 2);
+    ac.view_mut((0, n), (n, n)).fill_with_identity();
+    ac.view_mut((n, 0), (n, n)).copy_from(&-(&per_mass * stiff));
+    ac.view_mut((n, n), (n, n)).copy_from(&-(&per_mass * damp));
+    let torque = &per_mass * &motor * model.torque_constant();
+    let (at_v, at_d) = (flow, flow + 1);
+    ac.view_mut((n, at_d), (n, 1))
+        .copy_from(&-(&per_mass * &load));
+    match &model.drive {
+        Drive::FieldOriented { motor: m, gear, .. } => {
+            let e = m.parameters();
+            let i = 2 * n;
+            ac.view_mut((n, i), (n, 1)).copy_from(&torque);
+            ac[(i, i)] = -e.resistance / e.inductance_q;
+            ac[(i, at_v)] = 1.0 / e.inductance_q;
+            let induced = m.electrical_speed(*gear) * e.flux_linkage / e.inductance_q;
+            for (j, shape) in motor.iter().enumerate() {
+                ac[(i, n + j)] = -induced * shape;
+            }
+        }
+        Drive::Lag { bandwidth, .. } if places.inner == 1 => {
+            let i = 2 * n;
+            ac.view_mut((n, i), (n, 1)).copy_from(&torque);
+            ac[(i, i)] = -bandwidth;
+            ac[(i, at_v)] = *bandwidth;
+        }
+        Drive::Lag { .. } => ac.view_mut((n, at_v), (n, 1)).copy_from(&torque),
+    }
+    ac
+}
+
+/// A flow over one period in the states' own units, where no entry is far from the others.
+fn in_units(ac: &DMatrix<f64>, model: &DriveModel, units: &DVector<f64>) -> DMatrix<f64> {
+    let (size, h) = (ac.nrows(), model.period);
+    let (at_v, at_d) = (size - 2, size - 1);
+    let unit = |i: usize| match i {
+        i if i == at_v => model.effort_limit,
+        i if i == at_d => greatest_force(model),
+        i => units[i],
+    };
+    DMatrix::from_fn(size, size, |i, j| ac[(i, j)] * h * unit(j) / unit(i))
+}
+
+/// Puts the flow and the voltages under way into A; what the voltage that is made now does.
+fn hold_voltages(
+    a: &mut DMatrix<f64>,
+    ac: &DMatrix<f64>,
+    places: &Places,
+    late: f64,
+) -> DVector<f64> {
+    let (size, flow, voltages) = (places.size(), places.flow(), places.voltages());
+    let (at_v, at_d) = (flow, flow + 1);
+    let [v_whole, v_part] = whole_and_part(late);
+    let ad = ac.exp();
+    // Of two voltages in a period the newer acts in the rest of it.
+    let rest = match v_part > 0.0 {
+        true => (ac * (1.0 - v_part)).exp(),
+        false => ad.clone(),
+    };
+    a.view_mut((0, 0), (flow, flow))
+        .copy_from(&ad.view((0, 0), (flow, flow)));
+    a.view_mut((0, size - 1), (flow, 1))
+        .copy_from(&ad.view((0, at_d), (flow, 1)));
+    a[(size - 1, size - 1)] = 1.0;
+    let newer = DVector::from_fn(size, |i, _| if i < flow { rest[(i, at_v)] } else { 0.0 });
+    let older = DVector::from_fn(size, |i, _| match i < flow {
+        true => ad[(i, at_v)] - rest[(i, at_v)],
+        false => 0.0,
+    });
+    // v(k − j): of the voltages under way, or the one that is made now.
+    let mut into = DVector::zeros(size);
+    let mut acts_after = |j: usize, on: &DVector<f64>| match j {
+        0 => into += on,
+        j => {
+            let column = a.column(voltages + j - 1) + on;
+            a.set_column(voltages + j - 1, &column);
+        }
+    };
+    acts_after(v_whole as usize, &newer);
+    if v_part > 0.0 {
+        acts_after(v_whole as usize + 1, &older);
+    }
+    for j in 0..places.under_way {
+        match j {
+            0 => into[voltages] = 1.0,
+            j => a[(voltages + j, voltages + j - 1)] = 1.0,
+        }
+    }
+    into
+}
+
+/// What the late command does: through the current controller, which is put into A, or at once.
+fn control_current(
+    a: &mut DMatrix<f64>,
+    into: DVector<f64>,
+    places: &Places,
+    model: &DriveModel,
+) -> DVector<f64> {
+    let Drive::FieldOriented { q, .. } = &model.drive else {
+        return into;
+    };
+    let h = model.period;
+    let pi = [q[0] + q[1] * h, q[1] * h];
+    let (i, w) = (places.flow() - 1, places.flow());
+    let mut acts = &into * pi[0];
+    acts[w] = pi[1];
+    let from_current = a.column(i) - &acts;
+    a.set_column(i, &from_current);
+    a.set_column(w, &into);
+    a[(w, w)] = 1.0;
+    acts
+}
+
+/// Puts the commands under way into A, late by so many cycles; gives B.
+fn hold_commands(
+    a: &mut DMatrix<f64>,
+    acts: &DVector<f64>,
+    places: &Places,
+    cycles: f64,
+) -> DVector<f64> {
+    let (past, [whole, part]) = (places.past(), whole_and_part(cycles));
+    let mut b = DVector::zeros(places.size());
+    // u(k − j): the j-th past command, or the one that is made now.
+    let mut late_by = |j: usize, weight: f64| match j {
+        0 => b += acts * weight,
+        j => {
+            let column = a.column(past + j - 1) + acts * weight;
+            a.set_column(past + j - 1, &column);
+        }
+    };
+    late_by(whole as usize, 1.0 - part);
+    if part > 0.0 {
+        late_by(whole as usize + 1, part);
+    }
+    for j in 0..places.late {
+        match j {
+            0 => b[past] = 1.0,
+            j => a[(past + j, past + j - 1)] = 1.0,
+        }
+    }
+    b
 }

@@ -310,25 +310,7 @@ impl FeedbackDesign {
         let pb = &p * b;
         let k = a.transpose() * &pb / (1.0 + b.dot(&pb));
 
-        // u = −K (x̂ − N_x d̂) + N_u d̂: where the load stands still under a constant force.
-        let mut steady = DMatrix::zeros(n + 1, n + 1);
-        steady
-            .view_mut((0, 0), (n, n))
-            .copy_from(&(&a - DMatrix::identity(n, n)));
-        steady.view_mut((0, n), (n, 1)).copy_from(&b);
-        steady
-            .view_mut((n, 0), (1, n))
-            .copy_from(&linear.load.columns(0, n));
-        let mut acting = DVector::zeros(n + 1);
-        acting
-            .rows_mut(0, n)
-            .copy_from(&-linear.a.view((0, n), (n, 1)));
-        let steady = steady
-            .lu()
-            .solve(&acting)
-            .filter(|s| s.iter().all(|x| x.is_finite()))
-            .ok_or(DesignError::SteadyState { sticking })?;
-        let cancelled = -(k.dot(&steady.rows(0, n)) + steady[n]);
+        let cancelled = cancelled(&linear, &k, sticking)?;
         let k = k.push(cancelled);
 
         // Observer: the disturbance wanders, the command is uncertain.
@@ -362,6 +344,34 @@ impl FeedbackDesign {
         };
         Ok((design, first.max(second)))
     }
+}
+
+/// The command that cancels a constant unit force, `u = −K (x̂ − N_x d̂) + N_u d̂`: where the load stands still
+/// under it.
+fn cancelled(linear: &SampledDrive, k: &DVector<f64>, sticking: f64) -> Result<f64, DesignError> {
+    let n = linear.size() - 1;
+    let (a, b) = (
+        linear.a.view((0, 0), (n, n)).into_owned(),
+        linear.b.rows(0, n),
+    );
+    let mut steady = DMatrix::zeros(n + 1, n + 1);
+    steady
+        .view_mut((0, 0), (n, n))
+        .copy_from(&(&a - DMatrix::identity(n, n)));
+    steady.view_mut((0, n), (n, 1)).copy_from(&b);
+    steady
+        .view_mut((n, 0), (1, n))
+        .copy_from(&linear.load.columns(0, n));
+    let mut acting = DVector::zeros(n + 1);
+    acting
+        .rows_mut(0, n)
+        .copy_from(&-linear.a.view((0, n), (n, 1)));
+    let steady = steady
+        .lu()
+        .solve(&acting)
+        .filter(|s| s.iter().all(|x| x.is_finite()))
+        .ok_or(DesignError::SteadyState { sticking })?;
+    Ok(-(k.dot(&steady.rows(0, n)) + steady[n]))
 }
 
 fn states<'a>(from: impl Iterator<Item = &'a f64>) -> States<f64> {

@@ -1,7 +1,8 @@
 //! What a first screen says of made discoveries.
 
 use crate::controller::OwnController;
-use crate::judge::assessment::{Confidence, Level, remedies};
+use crate::judge::assess::remedies;
+use crate::judge::assessment::{Confidence, Level};
 use crate::judge::sentence::sentence;
 use crate::judge::{
     Assessment, Cost, Discovery, EffectFound, EffortCost, FigureLogs, FormFound, Gaps,

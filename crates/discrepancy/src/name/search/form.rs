@@ -31,11 +31,6 @@ const INSTEAD_OF_MEMORY: f64 = 0.6;
 /// level to be taken instead; what is a thirtieth of a gap is not named beside it either.
 const OF_ONE_LEVEL: f64 = 0.97;
 
-/// Whether an active effect is a form of another.
-pub(crate) fn is_form(active: &ActiveEffect) -> bool {
-    FrictionForm::of(active).is_some()
-}
-
 /// The axis' own dry friction as an effect; `None` where it has none.
 pub(super) fn own_friction(axis: &Axis) -> Option<ActiveEffect> {
     let friction = &axis.friction;

@@ -5,7 +5,8 @@ use axis_sim::ReplayError;
 use axis_sim::effects::{ActiveEffect, Measure, Nature};
 use nalgebra::DMatrix;
 
-use super::form::{is_form, own_friction};
+use super::form::own_friction;
+use super::is_form::is_form;
 use super::state::Search;
 use super::types::Found;
 use crate::answers::is_form_of;

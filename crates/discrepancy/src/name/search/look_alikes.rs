@@ -3,7 +3,7 @@
 use axis_sim::effects::ActiveEffect;
 
 use super::evidence::EQUAL;
-use super::form::is_form;
+use super::is_form::is_form;
 use super::promise::{Promises, best_first};
 use super::refined::{Refined, Refinement};
 use super::revise::RIVAL;

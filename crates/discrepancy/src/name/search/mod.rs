@@ -5,6 +5,7 @@ mod force;
 mod form;
 mod free_curve;
 mod intervals;
+mod is_form;
 mod lines;
 mod look_alikes;
 mod one_curve;
@@ -26,7 +27,7 @@ use std::sync::Arc;
 use axis_sim::{Axis, ReplayError};
 
 pub use self::evidence::{MATERIAL, needed};
-pub(crate) use self::form::is_form;
+pub(crate) use self::is_form::is_form;
 pub(crate) use self::revise::ABOVE_NOISE;
 use self::state::{ANEW, Search, steady_noise, steady_noise_beside};
 pub use self::types::{

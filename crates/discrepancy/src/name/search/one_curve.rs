@@ -6,8 +6,8 @@
 //! latter alone. Numbers count by what each brings by chance, and so does the choice: k of E effects against
 //! one of V variables.
 
-use super::form::is_form;
 use super::free_curve::{BY_CHANCE, FreeCurves};
+use super::is_form::is_form;
 use super::state::Search;
 use super::types::{RefusalReason, Refused};
 use crate::estimate::columns::free_parameters;

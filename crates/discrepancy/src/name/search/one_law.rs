@@ -7,7 +7,7 @@
 use axis_sim::effects::{ActiveEffect, EffectChannel, Scales};
 
 use super::evidence::{BY_CHANCE, LEAST_HELD_OUT, MATERIAL};
-use super::form::is_form;
+use super::is_form::is_form;
 use super::revise::RIVAL;
 use super::state::Search;
 use super::types::{Named, RefusalReason, Refused};

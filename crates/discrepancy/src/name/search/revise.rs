@@ -9,8 +9,8 @@
 use axis_sim::effects::{ActiveEffect, Effect, EffectVariable};
 
 use super::evidence::{BY_CHANCE, BY_ONE_NUMBER, MATERIAL};
-use super::form::is_form;
 use super::intervals::Intervals;
+use super::is_form::is_form;
 use super::promise::Promises;
 use super::state::Search;
 use super::types::{Named, Replaced};

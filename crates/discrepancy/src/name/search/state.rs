@@ -6,7 +6,7 @@ use axis_sim::Axis;
 use axis_sim::effects::Effect;
 
 use super::evidence::needed;
-use super::form::is_form;
+use super::is_form::is_form;
 use super::types::{Named, Refused, Replaced, RunnerUp, Settings};
 use crate::answers::LogSet;
 use crate::estimate::columns::Columns;

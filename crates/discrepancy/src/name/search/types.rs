@@ -9,7 +9,7 @@ use nalgebra::DMatrix;
 use thiserror::Error;
 
 use super::evidence::needed;
-use super::form::is_form;
+use super::is_form::is_form;
 use crate::answers::LogSet;
 use crate::estimate::columns::Columns;
 use crate::estimate::fit::Fit;

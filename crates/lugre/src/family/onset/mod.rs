@@ -6,7 +6,7 @@ mod elasto_plastic;
 
 use core::fmt::Debug;
 
-pub use bouc_wen::{BoucWenOnset, ClassicBoucWen};
+pub use bouc_wen::BoucWenOnset;
 pub use dahl::DahlOnset;
 pub use elasto_plastic::ElastoPlasticOnset;
 

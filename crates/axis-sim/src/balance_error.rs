@@ -2,8 +2,6 @@
 
 use thiserror::Error;
 
-use super::quality::CutoffReason;
-
 /// Why the torque balance of a log cannot be made.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -58,4 +56,29 @@ pub enum BalanceError {
         /// What sets it.
         reason: CutoffReason,
     },
+}
+
+/// What sets the cut-off of a torque balance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum CutoffReason {
+    /// The rate of the samples.
+    Sampling,
+    /// A resonance, below which the axis moves as one body.
+    Resonance,
+    /// Noise of the acceleration.
+    Noise,
+    /// The axis file.
+    Asked,
+}
+
+impl std::fmt::Display for CutoffReason {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Sampling => "the rate of the samples",
+            Self::Resonance => "the axis' lowest resonance",
+            Self::Noise => "noise of the acceleration",
+            Self::Asked => "[balance] cutoff_hz of the axis file",
+        })
+    }
 }

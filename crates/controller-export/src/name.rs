@@ -140,7 +140,7 @@ pub(crate) fn check_name(name: &str) -> Result<(), ExportError> {
 }
 
 /// Refuses a name of which the evaluator, `body` with placeholders, has one of its own.
-pub(super) fn check_free(name: &str, body: &str) -> Result<(), ExportError> {
+pub(crate) fn check_free(name: &str, body: &str) -> Result<(), ExportError> {
     let taken = at_file_scope(body);
     let upper = name.to_uppercase();
     let own = ENDINGS.iter().map(|end| format!("{name}_{end}"));

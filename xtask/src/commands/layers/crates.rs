@@ -1,4 +1,4 @@
-//! `layers`: every crate depends strictly downward.
+//! Every crate depends strictly downward.
 //!
 //! Cargo forbids cycles only. Each `Cargo.toml` says its layer in
 //! `[package.metadata.layer]`; a dependency must lie on a lower one.
@@ -10,12 +10,13 @@ use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use toml::{Table, Value};
 
 use feed_axis::context::read_text;
-use feed_axis::output::say;
 
-/// Runs the command.
-pub fn command() -> Result<()> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let manifests = manifests(&root)?;
+/// Number of crates, all of which depend strictly downward.
+///
+/// # Errors
+/// Those that do not.
+pub fn check(root: &Path) -> Result<usize> {
+    let manifests = manifests(root)?;
     let mut levels = BTreeMap::new();
     for (path, manifest) in &manifests {
         levels.insert(name(manifest)?.to_owned(), level(path, manifest)?);
@@ -33,10 +34,7 @@ pub fn command() -> Result<()> {
         }
     }
     if wrong.is_empty() {
-        return say(format!(
-            "layers: {} crates depend strictly downward",
-            levels.len()
-        ));
+        return Ok(levels.len());
     }
     Err(miette!(
         "dependencies must go to a lower layer:\n{}",
@@ -44,14 +42,22 @@ pub fn command() -> Result<()> {
     ))
 }
 
-fn manifests(root: &Path) -> Result<Vec<(PathBuf, Table)>> {
+/// The folders of all crates.
+///
+/// # Errors
+/// If the folder `crates` cannot be read.
+pub fn folders(root: &Path) -> Result<Vec<PathBuf>> {
     let mut paths = ["xtask", "tests", "tests/independent", "tests/outside"]
         .map(|p| root.join(p))
         .to_vec();
-    let crates = root.join("crates");
-    for entry in std::fs::read_dir(&crates).into_diagnostic()? {
+    for entry in std::fs::read_dir(root.join("crates")).into_diagnostic()? {
         paths.push(entry.into_diagnostic()?.path());
     }
+    paths.sort();
+    Ok(paths)
+}
+
+fn manifests(root: &Path) -> Result<Vec<(PathBuf, Table)>> {
     let read = |folder: PathBuf| -> Result<(PathBuf, Table)> {
         let path = folder.join("Cargo.toml");
         let manifest = read_text(&path)?
@@ -60,7 +66,7 @@ fn manifests(root: &Path) -> Result<Vec<(PathBuf, Table)>> {
             .wrap_err_with(|| format!("{} is not TOML", path.display()))?;
         Ok((path, manifest))
     };
-    paths.into_iter().map(read).collect()
+    folders(root)?.into_iter().map(read).collect()
 }
 
 fn name(manifest: &Table) -> Result<&str> {

@@ -3,9 +3,9 @@
 use axis_log::Log;
 use compensator::Drive;
 
-use super::error::BalanceError;
 use crate::actuator::Effort;
 use crate::axis::Axis;
+use crate::balance_error::BalanceError;
 use crate::control::absent::{command_hold, torque_skew};
 
 /// What a channel shows of the motor's torque.
@@ -23,7 +23,7 @@ enum Shows {
 
 /// A channel that shows the motor's torque.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct TorqueChannel {
+pub(crate) struct TorqueChannel {
     /// Name with unit.
     pub name: &'static str,
     shows: Shows,
@@ -139,7 +139,7 @@ impl TorqueChannel {
 }
 
 /// The channels of a log.
-pub(super) fn names(log: &Log) -> String {
+pub(crate) fn names(log: &Log) -> String {
     let names: Vec<&str> = log.channels().iter().map(|c| c.name.as_str()).collect();
     names.join(", ")
 }
