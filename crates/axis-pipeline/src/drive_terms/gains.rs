@@ -107,7 +107,8 @@ fn pid(axis: &Axis) -> Vec<Line> {
         ),
     ];
     let values = axis.control.values();
-    let line = |(name, key, [unit, drive_unit], meaning)| -> Option<Line> {
+    type Of = (&'static str, &'static str, [String; 2], &'static str);
+    let line = |(name, key, [unit, drive_unit], meaning): Of| -> Option<Line> {
         let value = values.optional(key)?;
         Some((name, value, unit, (factor, drive_unit), meaning))
     };
@@ -184,7 +185,7 @@ fn current(axis: &Axis) -> Vec<Line> {
             ],
         ),
     ];
-    let mut all = Vec::new();
+    let mut all: Vec<Line> = Vec::new();
     for (names, keys, meanings) in lines {
         let [Some(gain), Some(integral)] = keys.map(|key| values.optional(key)) else {
             continue;
