@@ -125,7 +125,8 @@ pub fn command(options: &Options) -> Result<()> {
         rows.push(row(options, reference)?);
     }
     if rows.is_empty() {
-        let all: Vec<&str> = AXES.iter().map(|one| one.file).collect();
+        let mut all: Vec<&str> = AXES.iter().map(|one| one.file).collect();
+        all.dedup();
         return Err(miette!(
             "no axis is named {}; valid: {}",
             options.names.join(", "),

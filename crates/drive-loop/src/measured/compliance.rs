@@ -10,8 +10,9 @@
 //! then Σ ρ times the terms of the first with one real ρ = φ_l/φ_m for each mode, by linear least squares: the
 //! residues φ_m φ_l and φ_m² give φ_l². With the effort held, a force on the load moves load and motor by
 //! D_y = Σ φ_l²/Q and D_θ = Σ φ_m φ_l/Q (Maxwell–Betti; D. J. Ewins, Modal Testing, 2nd ed., Research Studies
-//! Press 2000, 2.6), the effort by G_θ and G_y. A controller C sees γ s θ + P (α θ + β y); the winding answers the motor's speed
-//! by the current −E s θ, so that the measured H = i/u is H_0/(1 + K E s G_θ). Closed:
+//! Press 2000, 2.6), a unit of the effort by G_θ and G_y. A controller C sees γ s θ + P (α θ + β y); the
+//! winding answers the motor's speed by the current −E s θ, so that the measured H = i/u is H_0/(1 + E s G_θ).
+//! Closed:
 //!
 //! ```text
 //! i = −κ θ − λ y          κ = H_0 C (γ s + α P) + E s          λ = H_0 C β P
@@ -28,7 +29,9 @@ use std::f64::consts::TAU;
 
 use axis_sim::Axis;
 use compensator::Drive;
-use frequency_response::{Averaging, Estimator, FitSettings, FrequencyResponse, ModalFit, Record};
+use frequency_response::{
+    Averaging, Estimator, FitSettings, FrequencyResponse, ModalFit, Record, ResponseError,
+};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -44,6 +47,10 @@ use crate::plant::{LoopModel, Number, PlantAt};
 /// Distances of two lines below which drift and what the friction remembers are in a line: at 2 lines 20 % off,
 /// at 4 less than 3 % (`cargo test -p drive-loop compliance -- --nocapture`).
 const LOWEST: f64 = 4.0;
+/// How far beyond the compliance's band lines are fitted: a mode above it bends the lines below.
+const BEYOND: f64 = 1.5;
+/// Poles of the rigid motion and of one mode, with one to spare.
+const LEAST_POLES: usize = 4;
 const ZERO: Number = Number::new(0.0, 0.0);
 const ONE: Number = Number::new(1.0, 0.0);
 const J: Number = Number::new(0.0, 1.0);
@@ -149,11 +156,12 @@ impl MeasuredCompliance {
     ) -> Result<Self, String> {
         let (motor, load) = true_responses(at, measured);
         let settings = FitSettings {
+            band_hz: [fit.band_hz[0], fit.band_hz[1].min(BEYOND * COMPLIANCE[1])],
             held: false,
             most_delay_s: 1e-3,
             ..*fit
         };
-        let fitted = ModalFit::of(&motor, &settings)
+        let fitted = fewest(&motor, &settings)
             .map_err(|error| format!("the motor's response has no fit: {error}"))?;
         let (modes, notes) = modes_of(axis, &fitted, &load, &settings, motor.step_hz)?;
         let lines = lines(axis, at, plant, &modes, &measured.effort);
@@ -209,6 +217,18 @@ impl MeasuredCompliance {
             lines,
             notes,
         })
+    }
+}
+
+/// The fit with at most so many poles; with fewer where those are so many that they are not told apart.
+fn fewest(motor: &FrequencyResponse, settings: &FitSettings) -> Result<ModalFit, ResponseError> {
+    let mut settings = *settings;
+    loop {
+        let fitted = ModalFit::of(motor, &settings);
+        if !matches!(fitted, Err(ResponseError::NoFit)) || settings.most_poles <= LEAST_POLES {
+            return fitted;
+        }
+        settings.most_poles -= 1;
     }
 }
 
