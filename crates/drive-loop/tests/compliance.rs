@@ -81,8 +81,8 @@ fn truth(p: &Parameters) -> Vec<[f64; 2]> {
     let (from, count) = (40_000, 20_000);
     let amplitude = |f: f64, of: &dyn Fn(usize) -> f64| {
         let (mut re, mut im) = (0.0, 0.0);
-        for k in from..from + count {
-            let angle = TAU * f * pushed[k].time;
+        for (k, sample) in pushed.iter().enumerate().skip(from).take(count) {
+            let angle = TAU * f * sample.time;
             re += of(k) * angle.cos();
             im -= of(k) * angle.sin();
         }
