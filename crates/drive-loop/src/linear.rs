@@ -209,20 +209,25 @@ fn advance(chosen: &mut [usize], of: usize) -> bool {
 mod tests {
     use super::{Worth, least_within};
 
-    /// Along an edge of two limits, as far as a third: least −z with z ≤ x, z ≤ 2 − x + y² and |y| ≤ 1/2. The
-    /// first two meet at x = z = 1 + y²/2, which is most at y = 1/2: 1 + 1/8.
+    /// Along an edge of two limits, as far as a third: least −z with z ≤ x, z ≤ 1 − x + (y + 1)² and |y| ≤ 1/2. The
+    /// first two meet at x = z = (1 + (y + 1)²)/2, which is most at y = 1/2: 13/8.
     #[test]
     fn it_goes_along_an_edge_of_limits() {
         let mut of = |p: &[f64]| {
             let [x, y, z] = [p[0], p[1], p[2]];
             Some(Worth {
                 height: -z,
-                excess: vec![z - x, z - (2.0 - x + y * y), y - 0.5, -y - 0.5],
+                excess: vec![
+                    z - x,
+                    z - (1.0 - x + (y + 1.0) * (y + 1.0)),
+                    y - 0.5,
+                    -y - 0.5,
+                ],
             })
         };
-        let (at, value) = least_within(&mut of, 30.0, &[0.0, 0.1, -1.0], 0.3, 400);
-        assert!((value + 1.125).abs() < 1e-6, "{value}");
-        for (found, exact) in at.iter().zip([1.125, 0.5, 1.125]) {
+        let (at, value) = least_within(&mut of, 30.0, &[0.0, 0.0, -1.0], 0.3, 400);
+        assert!((value + 1.625).abs() < 1e-6, "{value}");
+        for (found, exact) in at.iter().zip([1.625, 0.5, 1.625]) {
             assert!((found - exact).abs() < 1e-5, "{at:?}");
         }
     }
