@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::error::LoopError;
 use crate::law::LoopGains;
+use crate::linear::{Worth, least_within};
 use crate::loops::{CornerLoop, Sensitivities};
 use crate::plant::Corner;
 use crate::search::least;
@@ -15,15 +16,23 @@ use crate::turn::radius;
 
 /// Widths of the symmetric optimum from which the search starts.
 const WIDTHS: [f64; 3] = [2.5, 4.0, 7.0];
-/// Evaluations of each start, and of the best after that.
-const COARSE: usize = 120;
-const FINE: usize = 260;
+/// Edges of the simplex from a start.
+const WIDE: f64 = 0.35;
+/// Evaluations of each turn of the simplex, and of the steps along the limits.
+const SIMPLEX: usize = 120;
+const STEPS: usize = 200;
 /// Cost of a constraint, per logarithm of how far it is exceeded: more than any gain is worth.
 const EXCESS: f64 = 30.0;
 /// Cost of a loop that is not stable.
 const UNSTABLE: f64 = 1e3;
-/// Share by which limits are kept in the search, for the peaks between two frequencies of the grid.
+/// Share of the limits that is searched within at first, for the peaks between two frequencies of the grid;
+/// share of them that the found peaks are brought to, with edges of the simplex for each time that takes.
 const KEPT: f64 = 0.998;
+const REACHED: f64 = 0.9998;
+const BROUGHT: [f64; 4] = [0.15, 0.03, 0.03, 0.03];
+/// Improvement of the cost below which another round of the search is not worth its time.
+const IMPROVED: f64 = 2e-5;
+const ROUNDS: usize = 4;
 
 /// Limits of the search.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +51,14 @@ impl Limits {
                 lower(settings.sensitivity_late),
             ],
             ripple: settings.ripple,
+        }
+    }
+
+    /// A share of the limits of the sensitivity.
+    fn tightened(&self, share: f64) -> Self {
+        Self {
+            sensitivity: self.sensitivity.map(|most| share * most),
+            ripple: self.ripple,
         }
     }
 }
@@ -63,25 +80,41 @@ impl AxisLoops {
             }
         };
         let mut evaluations = 0;
-        let mut cost = |x: &[f64]| {
-            evaluations += 1;
-            self.cost(&self.gains_of(x), limits)
+        let mut search = |from: &[f64], limits: &Limits, size: f64| {
+            let (found, used) = self.searched(from, limits, size);
+            evaluations += used;
+            found
         };
-        let found = starts.iter().map(|gains| {
-            let x = numbers(gains);
-            least(&mut cost, &x, 0.35, 1e-4, COARSE)
-        });
+        let mut within = limits.tightened(KEPT);
+        let found = starts
+            .iter()
+            .map(|gains| search(&numbers(gains), &within, WIDE));
         let mut best = found
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .unwrap_or_else(|| (numbers(&self.gains()), f64::INFINITY));
-        for size in [0.12, 0.03] {
-            let next = least(&mut cost, &best.0, size, 1e-7, FINE);
-            if next.1 < best.1 {
-                best = next;
+        // The peaks between the frequencies of the grid are brought to the limits.
+        let mut kept: Option<LoopGains> = None;
+        let mut share = KEPT;
+        for size in BROUGHT {
+            let gains = self.gains_of(&best.0);
+            let better = |before: &LoopGains| self.objective(&gains) < self.objective(before);
+            if self.keeps(&gains, limits) && kept.as_ref().is_none_or(better) {
+                kept = Some(gains);
             }
+            let [now, late] = self.peaks(&gains);
+            let over = (now / limits.sensitivity[0]).max(late / limits.sensitivity[1]);
+            if !over.is_finite() || (REACHED..=1.0).contains(&over) {
+                break;
+            }
+            share = (share * 0.5 * (1.0 + REACHED) / over).min(1.0);
+            within = limits.tightened(share);
+            best = search(&best.0, &within, size);
         }
+        if let Some(gains) = kept {
+            return Ok((gains, evaluations));
+        }
+        // Where that does not do it: an eigenvalue of slower loops, which the grid does not see.
         let mut gains = self.gains_of(&best.0);
-        // What little of a limit the cost leaves, and peaks between two frequencies of the grid.
         for _ in 0..40 {
             if self.keeps(&gains, limits) {
                 return Ok((gains, evaluations));
@@ -97,6 +130,39 @@ impl AxisLoops {
             found: figures.sensitivity.unwrap_or(f64::INFINITY),
             found_late: figures.sensitivity_late.unwrap_or(f64::INFINITY),
         })
+    }
+
+    /// The least cost that is found from a point, and the evaluations that it took. A simplex and steps along
+    /// the limits take turns: the first finds the way from afar and over bends, the second along the edges
+    /// in which limits meet.
+    fn searched(&self, from: &[f64], limits: &Limits, size: f64) -> ((Vec<f64>, f64), usize) {
+        let mut evaluations = 0;
+        let (mut best, mut size) = ((from.to_vec(), f64::INFINITY), size);
+        for _ in 0..ROUNDS {
+            let before = best.1;
+            let mut cost = |x: &[f64]| {
+                evaluations += 1;
+                self.cost(&self.gains_of(x), limits)
+            };
+            let next = least(&mut cost, &best.0, size, 1e-5, SIMPLEX);
+            if next.1 < best.1 {
+                best = next;
+            }
+            let mut worth = |x: &[f64]| {
+                evaluations += 1;
+                self.worth(&self.gains_of(x), limits)
+            };
+            let next = least_within(&mut worth, EXCESS, &best.0, 0.5 * size.abs(), STEPS);
+            if next.1 < best.1 {
+                best = next;
+            }
+            if before - best.1 < IMPROVED {
+                break;
+            }
+            // The other direction of each edge, too.
+            size *= -0.5;
+        }
+        (best, evaluations)
     }
 
     fn gains_of(&self, x: &[f64]) -> LoopGains {
@@ -139,36 +205,47 @@ impl AxisLoops {
 
     /// What the search makes least.
     fn cost(&self, gains: &LoopGains, limits: &Limits) -> f64 {
-        let excess = self.excess(gains, limits);
-        if excess.is_infinite() {
+        let Some(worth) = self.worth(gains, limits) else {
             return UNSTABLE;
-        }
-        self.objective(gains) + EXCESS * excess.max(0.0)
+        };
+        worth.height + EXCESS * worth.excess.into_iter().fold(0.0, f64::max)
     }
 
-    /// Logarithm by which the worst constraint is exceeded; infinite where a corner is unstable.
-    fn excess(&self, gains: &LoopGains, limits: &Limits) -> f64 {
+    /// The objective, and the logarithms by which the limits are exceeded; none where a corner is unstable.
+    fn worth(&self, gains: &LoopGains, limits: &Limits) -> Option<Worth> {
+        let excess = self.excess(gains, limits)?;
+        let height = self.objective(gains);
+        Some(Worth { height, excess })
+    }
+
+    /// The logarithm by which each constraint is exceeded, below 0 where it is kept; none where a corner is
+    /// unstable.
+    fn excess(&self, gains: &LoopGains, limits: &Limits) -> Option<Vec<f64>> {
+        let [now, late] = limits.sensitivity;
         let of = |s: Sensitivities| {
-            let most = |pair: [f64; 2]| pair[0].max(pair[1]);
-            let [now, late] = limits.sensitivity;
-            (most(s.now) / now).max(most(s.late) / late)
+            let [a, b] = s.now.map(|peak| (peak / now).ln());
+            let [c, d] = s.late.map(|peak| (peak / late).ln());
+            [a, b, c, d]
         };
-        let all: Vec<f64> = self
+        let all: Vec<[f64; 4]> = self
             .corners
             .par_iter()
             .map(|corner| of(corner.sensitivities(gains)))
             .collect();
-        let mut worst = all.into_iter().fold(0.0, f64::max) / KEPT;
+        let mut all = all.concat();
         if limits.ripple.is_finite() {
-            worst = worst.max(self.corners[0].ripple(&self.model, gains) / limits.ripple);
+            let ripple = self.corners[0].ripple(&self.model, gains) / limits.ripple;
+            // Without a step there is none.
+            all.push(ripple.max(f64::MIN_POSITIVE).ln());
         }
-        worst.ln()
+        all.iter().all(|excess| excess.is_finite()).then_some(all)
     }
 
     /// Whether these gains are within the limits, peaks between the frequencies of the grid
     /// included, with the greatest eigenvalue below 1 in every corner.
     fn keeps(&self, gains: &LoopGains, limits: &Limits) -> bool {
-        if self.excess(gains, limits) > 0.0 {
+        let excess = self.excess(gains, limits);
+        if excess.is_none_or(|all| all.iter().any(|excess| *excess > 0.0)) {
             return false;
         }
         let [now, late] = self.peaks(gains);

@@ -137,6 +137,11 @@ impl LoopAt {
         }
     }
 
+    /// What the controllers answer to what they see of the command, by speed and by position.
+    pub fn answered(&self, gains: &LoopGains) -> [Number; 2] {
+        self.answers(gains, self.speed, self.position)
+    }
+
     /// Command of the controllers to a speed and to a position that they see.
     fn answers(&self, gains: &LoopGains, speed: Number, position: Number) -> [Number; 2] {
         let c = self.controller(gains);

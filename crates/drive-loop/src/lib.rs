@@ -42,6 +42,7 @@ mod gains;
 mod helps;
 mod keys;
 mod law;
+mod linear;
 mod loops;
 mod margins;
 mod measured;
@@ -64,8 +65,9 @@ pub use helps::Help;
 pub use keys::TunedKey;
 pub use margins::{CornerMargins, CutMargins};
 pub use measured::{
-    ComparedMode, Comparison, MeasureSettings, MeasuredDrive, MeasuredLine, MeasuredMargins,
-    MeasuredMode, MeasuredModes, MeasuredPlant, Trap, WithDeviation,
+    ComparedMode, Comparison, ComplianceLine, MeasureSettings, MeasuredCompliance, MeasuredDrive,
+    MeasuredLine, MeasuredMargins, MeasuredMode, MeasuredModes, MeasuredPlant, MeasuredShape, Trap,
+    WithDeviation,
 };
 pub use moves::{MoveFigures, moves};
 pub use plant::Corner;

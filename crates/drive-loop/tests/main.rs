@@ -1,6 +1,7 @@
 //! One test program.
 
 mod analytic;
+mod compliance;
 mod measured;
 mod support;
 mod sweep;

@@ -23,7 +23,27 @@ fn terms_tables_and_loss_are_written_with_their_units() {
     let json: Value =
         serde_json::from_slice(&std::fs::read(out.join("drive.json")).unwrap()).unwrap();
     let terms = json["terms"].as_array().unwrap();
-    assert_eq!(terms.len(), 24);
+    // Those of the correction, gains of position and speed, of both current controllers.
+    assert_eq!(terms.len(), 24 + 3 + 4);
+    // The file's k_p, 0.0678 A/rpm, by hand: 0.0678 · 30/π · 1.641; Kv of 46.7/s over 16.667 and T_n of 0.0678/0.7122.
+    let drive_value = |name: &str| {
+        let term = terms.iter().find(|term| term["name"] == name).unwrap();
+        (
+            term["drive_value"].as_f64().unwrap(),
+            term["drive_unit"].as_str().unwrap(),
+        )
+    };
+    for (name, value, unit) in [
+        ("position_gain", 2.802, "(m/min)/mm"),
+        ("speed_gain", 1.06245, "N·m/(rad/s)"),
+        ("speed_integral_time", 95.198, "ms"),
+        ("current_q_gain", 8.805, "V/A"),
+        ("current_q_integral_time", 8.776, "ms"),
+    ] {
+        let (found, found_unit) = drive_value(name);
+        assert!((found / value - 1.0).abs() < 1e-4, "{name}: {found}");
+        assert_eq!(found_unit, unit);
+    }
     for term in terms {
         for key in ["name", "unit", "drive_unit", "meaning"] {
             assert!(term[key].as_str().is_some_and(|s| !s.is_empty()), "{term}");

@@ -89,10 +89,16 @@ impl Drive {
 
     /// One period: reference position (m) and velocity (m/s), and what is read.
     pub fn step(&mut self, reference: [f64; 2], seen: &Reading) -> Command {
+        self.step_pushed(reference, seen, 0.0)
+    }
+
+    /// The same with a current (A) added to what the speed controller asks for.
+    pub fn step_pushed(&mut self, reference: [f64; 2], seen: &Reading, added: f64) -> Command {
         let error = reference[0] - seen.position;
         let speed = self.position_gain * error + self.feedforward * reference[1] / self.travel;
         let slow = speed - seen.speed;
-        let asked = self.speed.ask(slow, self.period);
+        let mut asked = self.speed.ask(slow, self.period);
+        asked.0 += added;
         let current = asked.0.clamp(-self.current_limit, self.current_limit);
         self.speed.keep(asked, current, slow);
 

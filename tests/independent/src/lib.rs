@@ -68,7 +68,7 @@ pub use motion::{Chirp, Motion, Setpoint, SmoothMove, exercises, s_curve};
 pub use output::{Rough, log, write_case, write_slide};
 pub use parameters::Parameters;
 pub use random::Random;
-pub use run::{LoopNoise, Sample, run};
+pub use run::{LoopNoise, Push, Sample, run, run_pushed};
 pub use slide::{SLIDE_CASES, SlideDrive, SlideHidden, slide_log, slide_motions};
 pub use spin::{SpunBy, SpunMotor, spun_log};
 pub use truth::{TrueEffect, Truth, Wanted};

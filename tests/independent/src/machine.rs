@@ -44,6 +44,8 @@ pub struct Machine {
     bristle: f64,
     /// d, q, A.
     currents: [f64; 2],
+    /// From outside on the table, N.
+    pushed: f64,
 }
 
 /// The nut in the middle of a step, as far as it is known without its force.
@@ -84,6 +86,7 @@ impl Machine {
             table: [0.0; 2],
             bristle: 0.0,
             currents: [0.0; 2],
+            pushed: 0.0,
         }
     }
 
@@ -96,6 +99,11 @@ impl Machine {
             speed: self.rates[0],
             current: self.currents.map(|i| gain * i),
         }
+    }
+
+    /// A force on the table in positive direction (N), from now on.
+    pub fn push(&mut self, force: f64) {
+        self.pushed = force;
     }
 
     /// One step under held voltages d, q.
@@ -165,7 +173,8 @@ impl Machine {
         let (bristle, own) = self.friction.middle(self.bristle, w, half);
         let place = self.origin + self.table[0] + half * w;
         let hidden = &self.hidden.friction;
-        [bristle, own + hidden.force(self.time + half, place, w)]
+        let by_hidden = hidden.force(self.time + half, place, w);
+        [bristle, own + by_hidden - self.pushed]
     }
 
     fn contact(&self, middle: &DVector<f64>) -> Contact {

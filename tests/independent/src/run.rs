@@ -69,6 +69,37 @@ pub fn run(
     motion: &Motion,
     noise: &LoopNoise,
     random: &mut Random,
+    each: impl FnMut(&Sample),
+) -> Result<(), IndependentError> {
+    run_pushed(
+        p,
+        hidden,
+        motion,
+        (noise, random),
+        |_| Push::default(),
+        each,
+    )
+}
+
+/// What comes into the loop from outside in a control period.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Push {
+    /// Added to the q current's reference, A.
+    pub current: f64,
+    /// Force on the table in positive direction, N.
+    pub force: f64,
+}
+
+/// [`run`] with what comes in from outside at each time, s.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_pushed(
+    p: &Parameters,
+    hidden: &Hidden,
+    motion: &Motion,
+    (noise, random): (&LoopNoise, &mut Random),
+    push: impl Fn(f64) -> Push,
     mut each: impl FnMut(&Sample),
 ) -> Result<(), IndependentError> {
     let periods = |time: f64| (time / p.period + 1e-6).floor() as i64;
@@ -84,7 +115,9 @@ pub fn run(
         let time = k as f64 * p.period;
         let wanted = motion.at(time);
         let seen = noise.on(machine.seen(), random);
-        let command = drive.step([wanted.position, wanted.velocity], &seen);
+        let from_outside = push(time);
+        let reference = [wanted.position, wanted.velocity];
+        let command = drive.step_pushed(reference, &seen, from_outside.current);
         if k >= 0 {
             each(&Sample {
                 time,
@@ -93,7 +126,9 @@ pub fn run(
                 command,
             });
         }
-        for _ in 0..STEPS {
+        for i in 0..STEPS {
+            // In the middle of the step, as its forces are.
+            machine.push(push(time + (f64::from(i) + 0.5) * step).force);
             machine.step(command.voltage)?;
         }
     }

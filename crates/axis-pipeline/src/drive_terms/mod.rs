@@ -1,6 +1,7 @@
 //! What of the correction an ordinary drive or CNC can be given, in its units, and what
 //! that loses against the plan. `docs/drive-terms.md` says how it is entered.
 
+mod gains;
 mod tables;
 mod terms;
 mod units;

@@ -4,6 +4,7 @@ use axis_sim::Axis;
 use compensator::DriveTerms;
 use serde::Serialize;
 
+use super::gains::gains;
 use super::units::Units;
 
 /// A number that a drive takes.
@@ -26,8 +27,8 @@ pub struct Term {
 /// Name, value, its unit, factor to a drive's unit and that unit, meaning.
 type Line = (&'static str, f64, String, (f64, String), &'static str);
 
-/// Every number, in SI units and in those that drives use. What is no number on this axis
-/// (a ratio to an inertia of 0) is left out.
+/// Every number, in SI units and in those that drives use, and the gains and filters of the axis file's
+/// own drive. What is no number on this axis (a ratio to an inertia of 0) is left out.
 pub fn terms(axis: &Axis, of: &DriveTerms) -> Vec<Term> {
     let u = Units::of(axis);
     let per = |a: &str, b: &str| match b.contains('/') {
@@ -223,6 +224,6 @@ pub fn terms(axis: &Axis, of: &DriveTerms) -> Vec<Term> {
         drive_unit,
         meaning,
     };
-    let list = list.into_iter().map(term);
+    let list = list.into_iter().map(term).chain(gains(axis));
     list.filter(|t| t.drive_value.is_finite()).collect()
 }

@@ -2,24 +2,29 @@
 
 mod beside_model;
 mod compare;
+mod compliance;
 mod model_at;
 mod record;
+mod shapes;
 mod traps;
 
 use axis_log::Log;
 use axis_sim::Axis;
 use frequency_response::{
-    Averaging, Estimator, FitSettings, FrequencyResponse, LoopLine, LoopMargins, ModalFit, Record,
+    Averaging, Estimator, FitSettings, FittedMode, FrequencyResponse, LoopLine, LoopMargins,
+    ModalFit, Record,
 };
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::error::LoopError;
 use crate::set::LoopSet;
+use compliance::ToEffort;
 use record::Recorded;
 
 pub use crate::measured_plant::MeasuredPlant;
 pub use compare::{ComparedMode, Comparison};
+pub use compliance::{ComplianceLine, MeasuredCompliance, MeasuredShape};
 pub use traps::Trap;
 
 /// How a response is measured.
@@ -182,6 +187,10 @@ pub struct MeasuredDrive {
     pub fit: Option<MeasuredModes>,
     /// Margins with the gains of the file; none without excitation.
     pub margins: Option<MeasuredMargins>,
+    /// The compliance at the load with the gains of the file, from the responses alone.
+    pub compliance: Option<MeasuredCompliance>,
+    /// Why there is none, in words.
+    pub compliance_missing: Option<String>,
     /// Against the model; none of a measurement that is not usable.
     pub comparison: Option<Comparison>,
     /// What is wrong with the measurement.
@@ -248,6 +257,15 @@ impl MeasuredDrive {
             true => compare::comparison(&at, &plant, fit.as_ref(), shown.step_hz),
             false => None,
         };
+        let compliance = match is_usable {
+            true => ToEffort::of(&recorded, averaging, &at)
+                .and_then(|measured| MeasuredCompliance::of(axis, &at, &plant, &measured, &fitted)),
+            false => Err("the measurement is not usable".to_owned()),
+        };
+        let (compliance, compliance_missing) = match compliance {
+            Ok(found) => (Some(found), None),
+            Err(why) => (None, Some(why)),
+        };
         Ok(Self {
             schema: Self::SCHEMA,
             axis: axis.name.clone(),
@@ -269,6 +287,8 @@ impl MeasuredDrive {
             load: lines(&load),
             fit: fit.map(|fit| modes(&fit, shown.step_hz)),
             margins,
+            compliance,
+            compliance_missing,
             comparison,
             traps,
             notes: recorded.notes.clone(),
@@ -412,22 +432,23 @@ const BELOW: f64 = 6.0;
 /// Deviation of a frequency, as a share of it, from which on it is no mode.
 const VAGUE: f64 = 0.05;
 
-/// Pairs of poles that are modes of a machine, of a fit to lines `step_hz` apart.
-fn machine_modes(
-    fit: &ModalFit,
-    step_hz: f64,
-) -> impl Iterator<Item = &frequency_response::FittedMode> {
-    fit.modes.iter().filter(move |mode| {
-        let frequency = mode.frequency_hz;
-        mode.damping.value.abs() < DAMPED
-            && frequency.value > BELOW * step_hz
-            && frequency.value < fit.band_hz[1]
-            && frequency.deviation < VAGUE * frequency.value
-    })
+/// Whether a pair of poles is a mode of a machine, of a fit to lines `step_hz` apart.
+fn is_of_machine(mode: &FittedMode, fit: &ModalFit, step_hz: f64) -> bool {
+    let frequency = mode.frequency_hz;
+    mode.damping.value.abs() < DAMPED
+        && frequency.value > BELOW * step_hz
+        && frequency.value < fit.band_hz[1]
+        && frequency.deviation < VAGUE * frequency.value
+}
+
+/// Those that are.
+fn machine_modes(fit: &ModalFit, step_hz: f64) -> impl Iterator<Item = &FittedMode> {
+    let all = fit.modes.iter();
+    all.filter(move |mode| is_of_machine(mode, fit, step_hz))
 }
 
 fn modes(fit: &ModalFit, step_hz: f64) -> MeasuredModes {
-    let mode = |mode: &frequency_response::FittedMode| MeasuredMode {
+    let mode = |mode: &FittedMode| MeasuredMode {
         frequency_hz: mode.frequency_hz.into(),
         damping: mode.damping.into(),
         residue: mode.residue.norm(),

@@ -25,6 +25,8 @@ pub(crate) struct Recorded<'a> {
     pub excitation: Option<&'a [f64]>,
     pub command: &'a [f64],
     pub command_unit: &'static str,
+    /// What the drive really exerts, where the log has it beside the command.
+    pub effort: Option<&'a [f64]>,
     pub angle: Option<&'a [f64]>,
     pub speed: Option<&'a [f64]>,
     pub load: &'a [f64],
@@ -119,6 +121,9 @@ impl<'a> Recorded<'a> {
             excitation,
             command,
             command_unit,
+            effort: Some(names[1])
+                .filter(|effort| *effort != name)
+                .and_then(|effort| log.channel(effort).ok()),
             angle,
             speed,
             load,
@@ -181,16 +186,26 @@ impl<'a> Recorded<'a> {
         Ok(Averaging::Welch { segment })
     }
 
-    /// Of each window, with this output.
+    /// Of each window, from the command to this output.
     pub fn records<'b>(
         &'b self,
+        output: &'b [f64],
+        differenced: bool,
+    ) -> impl Iterator<Item = Record<'b>> {
+        self.records_from(self.command, output, differenced)
+    }
+
+    /// The same from another input.
+    pub fn records_from<'b>(
+        &'b self,
+        input: &'b [f64],
         output: &'b [f64],
         differenced: bool,
     ) -> impl Iterator<Item = Record<'b>> {
         self.windows.iter().map(move |[from, to]| Record {
             period_s: self.period,
             excitation: self.excitation.map(|r| &r[*from..*to]),
-            input: &self.command[*from..*to],
+            input: &input[*from..*to],
             output: &output[*from..*to],
             differenced,
         })

@@ -372,8 +372,8 @@ class Axis:
         - `coherence`: least coherence of a line that counts. `poles`: most poles of the fit; a mode has two.
 
         Keys are those of an item of `measurements` of `feed-axis frf --format json`: `motor_speed` and `load` have the lines (`frequency_hz`,
-        `value` as real and imaginary part, `deviation`, `coherence`), `fit` the modes, `margins` those with the gains of the file, `comparison`
-        what differs from the model, `traps` what is wrong with the measurement.
+        `value` as real and imaginary part, `deviation`, `coherence`), `fit` the modes, `margins` those with the gains of the file, `compliance`
+        the motion of the load per force on it (`compliance_missing` why there is none), `comparison` what differs from the model, `traps` what is wrong with the measurement.
 
         Raises LoopError if no response can be estimated; LogError.
 

@@ -170,6 +170,7 @@ fn words(found: &MeasuredDrive) -> String {
             );
         }
     }
+    text += &compliance(found);
     if let Some(c) = &found.comparison {
         let _ = writeln!(
             text,
@@ -182,6 +183,32 @@ fn words(found: &MeasuredDrive) -> String {
         for said in &c.said {
             let _ = writeln!(text, "  {said}");
         }
+    }
+    text
+}
+
+/// The compliance at the load, from the responses.
+fn compliance(found: &MeasuredDrive) -> String {
+    let Some(c) = &found.compliance else {
+        let why = found.compliance_missing.as_deref().unwrap_or("no reason");
+        return format!("  compliance at the load: none, as {why}\n");
+    };
+    let (unit, scale) = match found.position_unit.as_str() {
+        "m" => ("nm/N", 1e9),
+        _ => ("nrad/(N·m)", 1e9),
+    };
+    let mut text = format!(
+        "  compliance at the load from the responses: greatest {} {unit} at {:.1} Hz, {} from {:.0} to {:.0} Hz (RMS); model {} and {}\n",
+        pair(c.peak, scale, 3),
+        c.peak_at_hz,
+        pair(c.rms, scale, 3),
+        c.rms_band_hz[0],
+        c.rms_band_hz[1],
+        SixDigits(scale * c.model[0]),
+        SixDigits(scale * c.model[1]),
+    );
+    for note in &c.notes {
+        let _ = writeln!(text, "  note: {note}");
     }
     text
 }

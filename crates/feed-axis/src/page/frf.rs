@@ -3,7 +3,7 @@
 use axis_log::PlusMinus;
 use axis_report::{Cell, Figure, Notice, Page, Section, Series, Table, engineering};
 use axis_sim::Axis;
-use drive_loop::{MeasuredDrive, WithDeviation};
+use drive_loop::{ComplianceLine, MeasuredDrive, WithDeviation};
 
 use super::loops::{phases, sentence, sized};
 
@@ -15,7 +15,10 @@ pub fn page(axis: &Axis, all: &[MeasuredDrive]) -> Page {
     let page = Page::new(format!("Frequency responses of {}", axis.name)).lead(
         "Estimated from logs of the excited axis, beside the model of the axis file with its load sliding at the same place.",
     );
-    let page = page.section(margins(all)).section(modes(all));
+    let page = page
+        .section(margins(all))
+        .section(modes(all))
+        .section(compliance(all));
     all.iter()
         .fold(page, |page, found| page.section(response(found)))
 }
@@ -83,6 +86,59 @@ fn modes(all: &[MeasuredDrive]) -> Section {
         }
     }
     Section::new("Modes").table(table)
+}
+
+/// The compliance at the load, or why there is none.
+fn compliance(all: &[MeasuredDrive]) -> Section {
+    let mut table = Table::new(
+        "Compliance at the load with the gains of the file, from the responses",
+        ["load at", "greatest", "at, Hz", "model", "RMS", "model"],
+    )
+    .note("RMS over the logarithm of the frequency, of the lines up to 300 Hz. ± is a standard deviation.");
+    let mut section = Section::new("Compliance");
+    let mut figures = Vec::new();
+    for found in all {
+        let Some(c) = &found.compliance else {
+            let why = found.compliance_missing.as_deref().unwrap_or_default();
+            section = section.paragraph(sentence(&format!("at {}: none, as {why}", place(found))));
+            continue;
+        };
+        let unit = match found.position_unit.as_str() {
+            "m" => "nm/N",
+            _ => "nrad/(N·m)",
+        };
+        table = table.row([
+            Cell::text(format!("{} ({unit})", place(found))),
+            pair(c.peak, 1e9, 3),
+            Cell::number(c.peak_at_hz, 2),
+            Cell::number(1e9 * c.model[0], 3),
+            pair(c.rms, 1e9, 3),
+            Cell::number(1e9 * c.model[1], 3),
+        ]);
+        for note in &c.notes {
+            section = section.paragraph(sentence(note));
+        }
+        let f: Vec<f64> = c.lines.iter().map(|l| l.frequency_hz).collect();
+        let values = |of: fn(&ComplianceLine) -> [f64; 2]| -> Vec<[f64; 2]> {
+            let all = c.lines.iter().map(of);
+            all.map(|[re, im]| [1e9 * re, 1e9 * im]).collect()
+        };
+        figures.push(
+            Figure::new(
+                format!("Compliance with the load at {}", place(found)),
+                "frequency",
+                "compliance",
+            )
+            .units("Hz", unit)
+            .log_x()
+            .log_y()
+            .linked(FREQUENCY)
+            .series(sized("from the responses", &f, &values(|l| l.value)))
+            .series(sized("model", &f, &values(|l| l.model)).dashed()),
+        );
+    }
+    let section = section.table(table);
+    figures.into_iter().fold(section, Section::figure)
 }
 
 fn response(found: &MeasuredDrive) -> Section {
