@@ -220,8 +220,11 @@ mod tests {
     /// By their formulas: a bristle of the shares that are left, beside the curve.
     #[test]
     fn smooth_onsets_are_their_curves() {
-        let arctan = |x: f64| 2.0 * x.atan() / std::f64::consts::PI;
-        for (name, curve) in [("arctan-form", arctan), ("tanh-form", |x: f64| x.tanh())] {
+        let curves = [
+            |x: f64| 2.0 * x.atan() / std::f64::consts::PI,
+            |x: f64| x.tanh(),
+        ];
+        for (name, curve) in ["arctan-form", "tanh-form"].into_iter().zip(curves) {
             let all = forms("coulomb-friction", &[40.0], None);
             let mut active = all.into_iter().find(|a| a.effect.name == name).unwrap();
             let [share, velocity] = active.values.last_chunk_mut().unwrap();
