@@ -5,7 +5,7 @@ mod error;
 mod lugre;
 mod maxwell;
 mod onset;
-mod statics;
+mod static_stribeck;
 mod steady;
 
 use core::fmt::Debug;
@@ -16,7 +16,7 @@ pub use bristle::{BoucWen, Bristle, BristleParameters, Dahl, ElastoPlastic, Gene
 pub use error::FrictionError;
 pub use maxwell::{MaxwellSlip, MaxwellSlipParameters, MaxwellState};
 pub use onset::{BoucWenOnset, ClassicBoucWen, DahlOnset, ElastoPlasticOnset, LinearOnset, Onset};
-pub use statics::{Regularisation, StaticFriction, StaticFrictionParameters};
+pub use static_stribeck::{Regularisation, StaticFriction, StaticFrictionParameters};
 pub use steady::{FrictionLevel, SteadyState};
 
 /// A friction law: a force or torque that depends on the sliding speed and on a state.
