@@ -10,6 +10,11 @@ use crate::work::AxisAtWork;
 
 /// A body of one temperature; the segments of the screw stand behind them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum HeatNode {
     /// Winding and its iron.
     Winding,

@@ -102,6 +102,8 @@ mod pencil;
 mod section;
 mod shaft;
 mod shape;
+#[cfg(feature = "serde")]
+mod stored;
 mod system;
 mod torsion;
 mod unbalance;

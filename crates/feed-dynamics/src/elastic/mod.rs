@@ -1,8 +1,8 @@
 //! A drive of two inertias, motor and load, on an elastic transmission.
 
-mod ahead;
-mod course;
+mod average_acceleration;
 mod response;
+mod step_end;
 mod stepper;
 mod stiffness;
 

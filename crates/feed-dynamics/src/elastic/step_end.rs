@@ -1,6 +1,6 @@
 //! The end of a step of the elastic drive, as far as its load is known.
 
-use super::course::Course;
+use super::average_acceleration::Course;
 use super::stepper::{ElasticState, ElasticStepper};
 use crate::NutErrors;
 use crate::stepper::Contact;

@@ -17,8 +17,8 @@
 //! not θ: the force k δ then keeps its digits however far the axis travels.
 
 use super::ElasticDrive;
-use super::ahead::{Ahead, Share, Transmission};
-use super::course::Course;
+use super::average_acceleration::Course;
+use super::step_end::{Ahead, Share, Transmission};
 use crate::stepper::{check_step, find_load_within};
 use crate::{
     DriveError, LoadSearch, NutErrors, Observation, Settled, StepReport, TableMotion, TimeStepper,
