@@ -1,6 +1,7 @@
 //! What is stored through serde comes back; what constructors refuse does not get in.
 
-use foc_pmsm::{AntiWindup, CurrentGains, Dq, MotorParameters, Overmodulation, PiParameters, Pmsm};
+use foc_pmsm::svpwm::Overmodulation;
+use foc_pmsm::{AntiWindup, CurrentGains, Dq, MotorParameters, PiParameters, Pmsm};
 use serde::{Serialize, de::DeserializeOwned};
 use std::fmt::Debug;
 
