@@ -108,7 +108,7 @@ fn invalid_settings_are_refused() {
         FeedforwardDrive {
             travel_per_radian: r,
             torque_constant: kt,
-            period: period,
+            period,
         },
     ) {
         Err(CompensatorError::Setting { name, .. }) => name,

@@ -156,13 +156,14 @@ fn absurd_values_are_refused_with_the_limit() {
     let limits = Limits::new(1.0, 1.0, 1.0).unwrap();
     assert!(refused(Step::Move { to: 1e10, limits }).starts_with("to is 10000000000 m"));
     assert!(refused(Step::MoveBy { by: 1e10, limits }).starts_with("by is 10000000000 m"));
+    let limits = Limits::new(1e4, 1e4, 1e4).unwrap();
     let away = [
-        Step::Move { to: 9e5, limits },
-        Step::MoveBy { by: 9e5, limits },
+        Step::Move { to: 9e8, limits },
+        Step::MoveBy { by: 9e8, limits },
     ];
     let message = Program::new(0.0, away.to_vec()).unwrap_err().to_string();
     assert!(
-        message.contains("end of the step is 1800000 m"),
+        message.contains("end of the step is 1800000000 m"),
         "{message}"
     );
     let long = vec![Step::Dwell { duration: 9e6 }; 2];
