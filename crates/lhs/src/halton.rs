@@ -22,7 +22,7 @@ const BELOW_ONE: f64 = 1.0 - GRID;
 ///
 /// let mut point = [0.0; 2];
 /// Halton::new(2)?.row(5, &mut point)?; // 101 in base 2, 12 in base 3
-/// assert_eq!(point, [0.5 + 0.125, 2.0 / 3.0 + 1.0 / 9.0]);
+/// assert_eq!(point, [5.0 / 8.0, 7.0 / 9.0]); // 0.101 and 0.21
 /// let points = Halton::scrambled(12, 3)?.design(500)?;
 /// assert_eq!((points.len(), points.dims()), (500, 12));
 /// # Ok::<(), lhs::LhsError>(())
