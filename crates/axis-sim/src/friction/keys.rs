@@ -73,7 +73,8 @@ pub(super) fn steady(v: &Values) -> Result<SteadyState, PartError> {
         coulomb: v.or("coulomb_backward", forward.coulomb),
         stiction: v.or("stiction_backward", forward.stiction),
     };
-    if backward.stiction < backward.coulomb {
+    let has_own = backward != forward;
+    if has_own && backward.stiction < backward.coulomb {
         return Err(PartError::together(
             "stiction_backward (stiction, if it is left out) is below coulomb_backward (coulomb)",
             "stiction_backward at least as great as coulomb_backward",
