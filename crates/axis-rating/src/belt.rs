@@ -11,6 +11,8 @@ pub const MOST_TEETH_IN_MESH: f64 = 12.0;
 
 /// The teeth of a belt.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct BeltTeeth {
     /// Permissible force of one tooth for each metre of width, N/m, at the speed of the duty.
     pub force_per_width_n_per_m: f64,

@@ -16,6 +16,8 @@ use crate::rating::Rating;
 
 /// A DC link with a brake.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct DcLink {
     /// Capacitance, F.
     pub capacitance_f: f64,

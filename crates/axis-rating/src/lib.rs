@@ -37,24 +37,26 @@
 
 pub mod belt;
 pub mod brake;
-mod course;
 mod error;
 pub mod life;
 mod means;
 pub mod motor;
+mod power_course;
 pub mod preload;
 mod rating;
 pub mod screw;
+#[cfg(feature = "serde")]
+mod stored;
 pub mod voltage;
 pub mod winding;
 
 pub use belt::BeltTeeth;
 pub use brake::{DcLink, Regeneration};
-pub use course::PowerCourse;
 pub use error::RatingError;
 pub use life::{BASE_REVOLUTIONS, GuideBase, RollingElement};
 pub use means::{MeanLoad, RootMeanSquare};
 pub use motor::{MotorDuty, TorqueCurve};
+pub use power_course::PowerCourse;
 pub use rating::{Bound, Rating};
 pub use screw::{ScrewMounting, ScrewStrength};
 pub use voltage::MotorVoltage;

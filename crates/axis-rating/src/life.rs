@@ -9,6 +9,11 @@ use crate::rating::Rating;
 
 /// What rolls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum RollingElement {
     /// Balls: p = 3.
     Ball,
@@ -29,6 +34,11 @@ impl RollingElement {
 /// Travel at which a guide's dynamic load rating is defined: ISO 14728-1 has both, and the data sheet says which. Ratings of
 /// 50 km are 2^(1/3) = 1.26 times those of 100 km of the same guide with balls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum GuideBase {
     /// 50 km, such as IKO's.
     Km50,

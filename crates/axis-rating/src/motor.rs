@@ -9,6 +9,11 @@ use crate::rating::Rating;
 /// A limit of the torque over speed: points, straight between them, constant below the first, 0 beyond the
 /// last.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(try_from = "Vec<[f64; 2]>", into = "Vec<[f64; 2]>")
+)]
 pub struct TorqueCurve(Vec<[f64; 2]>);
 
 impl TorqueCurve {
@@ -46,6 +51,11 @@ impl TorqueCurve {
     pub fn constant(torque_n_m: f64) -> Result<Self, RatingError> {
         let torque = positive("torque_n_m", torque_n_m)?;
         Ok(Self(vec![[0.0, torque], [f64::MAX, torque]]))
+    }
+
+    /// Its points: speed, rad/s, and torque, N·m.
+    pub fn points(&self) -> &[[f64; 2]] {
+        &self.0
     }
 
     /// The torque that it allows at a speed of either sign, N·m.

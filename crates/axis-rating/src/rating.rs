@@ -2,6 +2,11 @@
 
 /// On which side of its limit a value must be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum Bound {
     /// The value may be as large as the limit: a torque, a speed, a temperature.
     AtMost,

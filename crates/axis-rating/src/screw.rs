@@ -7,6 +7,11 @@ use crate::rating::Rating;
 
 /// How the ends of a screw are held against bending.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum ScrewMounting {
     /// Clamped at both ends.
     FixedFixed,
@@ -46,6 +51,8 @@ impl ScrewMounting {
 
 /// The shaft of a screw.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ScrewStrength {
     /// Diameter at the root of the thread, m.
     pub root_diameter_m: f64,

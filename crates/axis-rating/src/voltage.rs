@@ -13,6 +13,8 @@ use crate::rating::Rating;
 
 /// Electrical values of a motor. Currents and flux are amplitudes of the phase.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct MotorVoltage {
     /// Resistance of a phase, Ω.
     pub resistance_ohm: f64,

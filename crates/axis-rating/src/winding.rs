@@ -10,12 +10,14 @@
 //! (a balance of heat in one body; data sheets state its two numbers). In a stretch of constant P_r it is linear, and
 //! solved exactly; over a duty that repeats itself θ comes back to where it began, which is solved for.
 
-use crate::course::PowerCourse;
 use crate::error::{RatingError, finite, not_negative, positive};
+use crate::power_course::PowerCourse;
 use crate::rating::Rating;
 
 /// A winding.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct WindingModel {
     /// Thermal resistance from the winding to the surroundings, K/W.
     pub thermal_resistance_k_per_w: f64,

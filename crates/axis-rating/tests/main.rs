@@ -4,6 +4,8 @@ mod catalogue;
 mod closed_forms;
 mod laws;
 mod refusals;
+#[cfg(feature = "serde")]
+mod stored;
 
 /// Asserts that two numbers agree within a share.
 #[track_caller]

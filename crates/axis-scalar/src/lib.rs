@@ -3,8 +3,8 @@
 //! A Cortex-M4F computes `f32` in hardware and `f64` in software, so control
 //! laws are generic over their scalar. [`Scalar`] has the arithmetic that they
 //! need and the elementary functions of [`libm`], which are the same to the bit
-//! on every platform and need no `std`. Of an `f32`, sine, cosine and cube root are this
-//! crate's own, in `f32` and whole numbers, since those of `libm` compute in `f64`.
+//! on every platform and need no `std`. Of an `f32`, sine, cosine, cube root and hypotenuse
+//! are this crate's own, in `f32` and whole numbers, since those of `libm` compute in `f64`.
 //!
 //! # Errors
 //! Of every number, however large, as measured on a hundred million of them, relative
@@ -34,8 +34,8 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 
 mod single;
 
-use libm::{cbrt as double_cbrt, sincos as double_sin_cos};
-use single::{cbrt as single_cbrt, sin_cos as single_sin_cos};
+use libm::{cbrt as double_cbrt, hypot as double_hypot, sincos as double_sin_cos};
+use single::{cbrt as single_cbrt, hypot as single_hypot, sin_cos as single_sin_cos};
 
 mod sealed {
     pub trait Sealed {}
@@ -132,6 +132,14 @@ pub trait Scalar:
     #[must_use]
     fn ln(self) -> Self;
 
+    /// ln(1 + x), without cancellation near 0.
+    #[must_use]
+    fn ln_1p(self) -> Self;
+
+    /// √(x² + y²), without overflow on the way.
+    #[must_use]
+    fn hypot(self, other: Self) -> Self;
+
     /// Hyperbolic tangent.
     #[must_use]
     fn tanh(self) -> Self;
@@ -158,7 +166,7 @@ pub trait Scalar:
 }
 
 macro_rules! scalar {
-    ($t:ident, $sqrt:ident, $sincos:ident, $exp:ident, $expm1:ident, $log:ident, $tanh:ident, $cbrt:ident, $floor:ident, $ceil:ident) => {
+    ($t:ident, $sqrt:ident, $sincos:ident, $exp:ident, $expm1:ident, $log:ident, $log1p:ident, $hypot:ident, $tanh:ident, $cbrt:ident, $floor:ident, $ceil:ident) => {
         impl Scalar for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -227,6 +235,16 @@ macro_rules! scalar {
             }
 
             #[inline]
+            fn ln_1p(self) -> Self {
+                libm::$log1p(self)
+            }
+
+            #[inline]
+            fn hypot(self, other: Self) -> Self {
+                $hypot(self, other)
+            }
+
+            #[inline]
             fn tanh(self) -> Self {
                 libm::$tanh(self)
             }
@@ -266,6 +284,8 @@ scalar!(
     expf,
     expm1f,
     logf,
+    log1pf,
+    single_hypot,
     tanhf,
     single_cbrt,
     floorf,
@@ -278,6 +298,8 @@ scalar!(
     exp,
     expm1,
     log,
+    log1p,
+    double_hypot,
     tanh,
     double_cbrt,
     floor,

@@ -110,3 +110,15 @@ fn normal_cbrt(x: f32) -> f32 {
     let series = 1.0 / 3.0 - part * (1.0 / 9.0 - part * (5.0 / 81.0));
     root + root * (part * series)
 }
+
+/// √(x² + y²) by the ratio of the two: nothing overflows that the result does not.
+#[inline]
+pub(crate) fn hypot(x: f32, y: f32) -> f32 {
+    let (x, y) = (x.abs(), y.abs());
+    let (large, small) = if x < y { (y, x) } else { (x, y) };
+    if large == 0.0 || !large.is_finite() {
+        return large + small;
+    }
+    let ratio = small / large;
+    large * libm::sqrtf(1.0 + ratio * ratio)
+}

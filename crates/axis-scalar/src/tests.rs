@@ -32,12 +32,23 @@ fn compare(x: f32) -> Result<(), TestCaseError> {
     if x != 0.0 {
         within("ln", Scalar::ln(x.abs()), wide.abs().ln(), 0.7)?;
     }
+    if x > -1.0 {
+        within("ln_1p", Scalar::ln_1p(x), wide.ln_1p(), 1.0)?;
+    }
+    for other in [x, 1.0, 0.75 * x, -1e-3 * x, 1e19] {
+        let truth = wide.hypot(f64::from(other));
+        within("hypot", Scalar::hypot(x, other), truth, HYPOT)?;
+    }
     prop_assert_eq!(f64::from(Scalar::floor(x)), wide.floor());
     prop_assert_eq!(f64::from(Scalar::ceil(x)), wide.ceil());
     prop_assert_eq!(f32::of(wide), x);
     prop_assert_eq!(x.to_f64(), wide);
     Ok(())
 }
+
+/// In ε: the ratio, its square plus 1, the root and the product, each rounded once; not of
+/// results below the normal numbers.
+const HYPOT: f64 = 2.0;
 
 /// Every 10007th `f32`, of either sign: all exponents, all kinds of mantissas.
 #[test]
@@ -72,6 +83,11 @@ fn what_is_no_number_stays_none_and_zeros_keep_their_sign() {
     }
     assert!(Scalar::cbrt(f32::NAN).is_nan());
     assert_eq!(Scalar::cbrt(f32::NEG_INFINITY), f32::NEG_INFINITY);
+    assert_eq!(Scalar::hypot(f32::INFINITY, 1.0), f32::INFINITY);
+    assert!(Scalar::hypot(f32::NAN, 1.0).is_nan() && Scalar::hypot(1.0, f32::NAN).is_nan());
+    assert_eq!(Scalar::hypot(0.0_f32, -0.0), 0.0);
+    assert_eq!(Scalar::ln_1p(-1.0_f32), f32::NEG_INFINITY);
+    assert!(Scalar::ln_1p(-2.0_f32).is_nan());
     for zero in [0.0_f32, -0.0] {
         assert_eq!(Scalar::sin_cos(zero).0.to_bits(), zero.to_bits());
         assert_eq!(Scalar::cbrt(zero).to_bits(), zero.to_bits());
@@ -93,6 +109,8 @@ proptest! {
         prop_assert!(close(Scalar::tanh(x), f64::tanh(x)));
         prop_assert!(close(Scalar::cbrt(x), f64::cbrt(x)));
         prop_assert!(close(Scalar::ln(x.abs()), f64::ln(x.abs())));
+        prop_assert!(close(Scalar::ln_1p(x.abs()), f64::ln_1p(x.abs())));
+        prop_assert!(close(Scalar::hypot(x, 3.0), f64::hypot(x, 3.0)));
         prop_assert_eq!(Scalar::sqrt(x.abs()), f64::sqrt(x.abs()));
         prop_assert_eq!(Scalar::floor(x), f64::floor(x));
         let (s, c) = Scalar::sin_cos(x);

@@ -4,6 +4,8 @@ use crate::error::ThermalError;
 
 /// A stretch of a motion, short beside the time in which a speed changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct DutySample {
     /// How long it lasts, s.
     pub duration: f64,

@@ -4,6 +4,11 @@ use crate::error::{ThermalError, check};
 
 /// How a friction changes with the temperature of the part that it acts in.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum TemperatureLaw {
     /// Not at all.
     #[default]
@@ -42,6 +47,8 @@ impl TemperatureLaw {
 /// The laws by which friction changes as the axis warms up. Each may be switched off
 /// ([`FrictionLaws::CONSTANT`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct FrictionLaws {
     /// Of the viscous part.
     pub viscous: TemperatureLaw,

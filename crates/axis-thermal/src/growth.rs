@@ -22,6 +22,8 @@ use crate::state::{BODIES, HeatNode, ThermalState};
 
 /// Growth at a position, m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Growth {
     /// Of the screw: by which the table is off with a motor encoder; 0 without a screw.
     pub screw: f64,
@@ -33,6 +35,8 @@ pub struct Growth {
 
 /// The force in a screw that is held at both ends, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ThermalForce {
     /// Compression by heat.
     pub compression: f64,

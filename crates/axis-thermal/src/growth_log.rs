@@ -10,6 +10,11 @@ use crate::work::AxisAtWork;
 
 /// What a reading of growth shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum GrowthOf {
     /// The screw, against the bed at the front bearing.
     #[default]
@@ -33,6 +38,11 @@ impl Growth {
 
 /// What readings of growth count from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum GrowthZero {
     /// The begin of the log.
     #[default]
@@ -70,6 +80,8 @@ pub struct GrowthLog {
 
 /// A reading of growth, and what the model says of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct FollowedGrowth {
     /// Number of its stretch, from 0.
     pub stretch: usize,
@@ -85,6 +97,8 @@ pub struct FollowedGrowth {
 
 /// A reading of the friction's power, and what the model says of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct FollowedFriction {
     /// Number of its stretch, from 0.
     pub stretch: usize,
@@ -98,6 +112,8 @@ pub struct FollowedFriction {
 
 /// All readings of a log beside what a model says of them.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct FollowedLog {
     /// Of growth.
     pub growth: Vec<FollowedGrowth>,

@@ -24,6 +24,8 @@ use crate::unknown::ThermalUnknown;
 
 /// How a model is fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct GrowthFit {
     /// σ: by which growth in the log and in the best model differ, m.
     pub uncertainty: f64,
@@ -50,6 +52,8 @@ impl Default for GrowthFit {
 
 /// A model that was fitted.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct FittedGrowth {
     /// Its numbers.
     pub parameters: ThermalParameters,

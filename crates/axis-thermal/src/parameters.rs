@@ -5,6 +5,8 @@ use crate::screw::ThermalScrew;
 
 /// A body of one temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ThermalBody {
     /// Heat capacity, J/K.
     pub capacity: f64,
@@ -14,6 +16,8 @@ pub struct ThermalBody {
 
 /// The bodies of an axis besides the segments of its screw.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ThermalBodies {
     /// Winding and its iron.
     pub winding: ThermalBody,
@@ -35,6 +39,8 @@ pub struct ThermalBodies {
 
 /// What conducts heat between them, W/K.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ThermalLinks {
     /// Winding to housing.
     pub winding_to_housing: f64,
@@ -64,6 +70,8 @@ pub struct ThermalLinks {
 
 /// Dry and viscous friction's shares of something.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct FrictionShares {
     /// Of the dry friction.
     pub dry: f64,
@@ -73,6 +81,8 @@ pub struct FrictionShares {
 
 /// Where the friction of the axis turns into heat. What nut and bearings do not take, the guides do.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct HeatShares {
     /// Nut's.
     pub nut: FrictionShares,
@@ -88,6 +98,8 @@ pub struct HeatShares {
 
 /// Heat of the winding.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct WindingLoss {
     /// Loss for each square of the motor's torque, W/(N·m)², or W/N² of a linear motor: the
     /// inverse square of the motor constant, 1.5 R/K_t² of a synchronous motor without d current.
@@ -98,6 +110,8 @@ pub struct WindingLoss {
 
 /// Linear expansion of what positions are measured by.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Expansions {
     /// Of the scale, 1/K.
     pub scale: f64,
@@ -111,6 +125,8 @@ pub struct Expansions {
 /// al. 2025 (screw 40 mm by 1.5 m, table 515 kg), **assumed** from text-book formulas and usual
 /// sizes: none was measured.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ThermalParameters {
     /// The screw; none of an axis without one, whose friction heats the guides alone.
     pub screw: Option<ThermalScrew>,

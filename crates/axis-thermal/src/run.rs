@@ -15,6 +15,8 @@ const SHORTEST: f64 = 1e-3;
 
 /// How exactly a run is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ThermalAccuracy {
     /// By which a step of first order may differ from one of second order, K. What is kept is
     /// that of second order.

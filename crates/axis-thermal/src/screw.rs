@@ -9,6 +9,8 @@ pub(crate) const MOST_SEGMENTS: usize = 400;
 
 /// A solid screw. Its place 0 is where positions of the table are 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ThermalScrew {
     /// Length along which the nut may be, m.
     pub length: f64,
@@ -41,6 +43,8 @@ pub struct ThermalScrew {
 /// doi:10.1016/j.ijmachtools.2011.04.001). Text books state the same law with Re = ωD²/ν, which
 /// gives 1.6 times as much: `turning` is a factor for that.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ScrewAir {
     /// At rest: free convection and radiation, W/(m²·K).
     pub still: f64,
@@ -50,6 +54,11 @@ pub struct ScrewAir {
 
 /// How a screw is held along its axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum ScrewEnds {
     /// Fixed at the driven end; the other end is free or floats.
     #[default]

@@ -4,6 +4,11 @@ use nalgebra::DVector;
 
 /// A body of one temperature; the segments of the screw stand behind them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum HeatNode {
     /// Winding and its iron.
     Winding,

@@ -5,6 +5,11 @@ use crate::parameters::ThermalParameters;
 
 /// A number, or several that go together, that logs of growth can tell something of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum ThermalUnknown {
     /// Nut's share of friction, dry and viscous.
     NutShare,

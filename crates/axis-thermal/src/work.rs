@@ -9,6 +9,8 @@ use crate::state::{BODIES, HeatNode, ThermalState};
 
 /// Where the heat of an axis arises, W.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct HeatLosses {
     /// In the winding.
     pub winding: f64,

@@ -6,3 +6,5 @@ mod growth;
 mod identify;
 mod predict;
 mod refusals;
+#[cfg(feature = "serde")]
+mod stored;

@@ -2,6 +2,11 @@
 
 /// The six degrees of freedom of a node, in the paper's order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum Dof {
     /// Axial displacement u, m.
     U = 0,

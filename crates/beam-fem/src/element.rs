@@ -70,6 +70,8 @@ pub(crate) struct Coefficients {
 /// A two-node rod with linear shape functions: stiffness k [1 −1; −1 1],
 /// mass m/6 [2 1; 1 2].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Rod {
     /// k, N/m or N·m/rad.
     pub stiffness: f64,

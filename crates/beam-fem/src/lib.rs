@@ -104,6 +104,8 @@ mod section;
 mod shaft;
 mod shape;
 mod spacing;
+#[cfg(feature = "serde")]
+mod stored;
 mod system;
 mod torsion;
 mod unbalance;

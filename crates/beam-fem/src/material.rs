@@ -6,6 +6,14 @@ use crate::error::positive;
 /// A linear elastic, isotropic material. Made by [`Material::new`], which
 /// checks it, and immutable after that.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        try_from = "crate::stored::StoredMaterial",
+        into = "crate::stored::StoredMaterial"
+    )
+)]
 pub struct Material {
     youngs_modulus: f64,
     poisson_ratio: f64,

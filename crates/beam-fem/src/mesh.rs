@@ -6,6 +6,14 @@ use crate::spacing::LEAST_SPACING;
 
 /// Nodes along the beam axis, ascending from 0 at the driven end.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        try_from = "crate::stored::StoredMesh",
+        into = "crate::stored::StoredMesh"
+    )
+)]
 pub struct Mesh {
     nodes: Vec<f64>,
 }

@@ -8,6 +8,8 @@ use crate::{BeamError, Material};
 
 /// A rigid body on a node: a disc, a pulley, a pedestal.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct LumpedMass {
     /// Mass, kg.
     pub mass: f64,
@@ -57,6 +59,8 @@ impl LumpedMass {
 /// A linear bearing or seal: the force on the shaft is −K (v, w) − C (v̇, ẇ), rows and
 /// columns y, z. Off-diagonal terms need not be symmetric, and any sign is allowed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Bearing {
     /// Stiffness [[k_yy, k_yz], [k_zy, k_zz]], N/m.
     pub stiffness: [[f64; 2]; 2],
@@ -94,6 +98,11 @@ impl Bearing {
 /// with the shaft: damping within the shaft, which drives forward whirl above a
 /// critical speed, is [`crate::BeamModel::set_rotating_damping`].
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 #[non_exhaustive]
 pub enum Damping {
     /// None.
@@ -157,6 +166,8 @@ impl Damping {
 
 /// A mass off the axis that turns with the shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Unbalance {
     /// Node of the shaft.
     pub node: usize,

@@ -9,6 +9,11 @@ use crate::{BeamError, Material};
 /// centroid and the shear centre. Made by [`CrossSection::new`] or
 /// [`CrossSection::solid_circle`], which check it, and immutable after that.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(try_from = "SectionProperties", into = "SectionProperties")
+)]
 pub struct CrossSection {
     area: f64,
     second_moment_y: f64,
@@ -20,6 +25,8 @@ pub struct CrossSection {
 
 /// The numbers of any section, for [`CrossSection::general`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct SectionProperties {
     /// Area A, m².
     pub area: f64,

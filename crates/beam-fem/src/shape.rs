@@ -7,6 +7,11 @@ use crate::{BeamError, CrossSection, Material, SectionProperties};
 
 /// The outline of a section by its dimensions in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 #[non_exhaustive]
 pub enum SectionShape {
     /// A circle, with a concentric hole unless `inner` is 0.

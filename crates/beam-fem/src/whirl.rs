@@ -12,6 +12,11 @@ const ZERO: Complex<f64> = Complex::new(0.0, 0.0);
 
 /// Direction of a whirling motion against the spin (positive about x).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum Whirl {
     /// Every node goes round with the spin.
     Forward,

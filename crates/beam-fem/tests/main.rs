@@ -11,4 +11,6 @@ mod element_sources;
 mod moving_nut;
 mod rotors;
 mod sections;
+#[cfg(feature = "serde")]
+mod stored;
 mod whirl;

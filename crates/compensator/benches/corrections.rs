@@ -9,9 +9,9 @@ use axis_scalar::Scalar;
 use cfnn::{FixedNetwork, Network, Scaling, ScalingRange, Shape, packed_len};
 use compensator::{
     Along, Cascade, Combined, Compensator, Drive, DriveModel, DriveSection, FeedbackDesign,
-    FeedbackSettings, FrictionFeedforward, Mode, MotionEstimator, NetworkCompensation,
-    NoCompensation, ObserverGains, Plan, PlanSettings, PlanWithFeedback, Planned, Reference,
-    Sample, Target, TransferFunction, TransferFunctionModel,
+    FeedbackSettings, FeedforwardDrive, FrictionFeedforward, Mode, MotionEstimator,
+    NetworkCompensation, NoCompensation, ObserverGains, Plan, PlanSettings, PlanWithFeedback,
+    Planned, Reference, Sample, Target, TransferFunction, TransferFunctionModel,
 };
 use criterion::{Criterion, criterion_group, criterion_main};
 use foc_pmsm::{MotorParameters, Pmsm};
@@ -55,7 +55,15 @@ fn friction<S: Exponential>() -> FrictionFeedforward<S> {
         ..Parameters::LIU_2025
     };
     let law = LuGre::new(parameters.cast()).expect("valid parameters");
-    FrictionFeedforward::new(law, S::of(R), S::of(1.641), S::of(T)).expect("valid parameters")
+    FrictionFeedforward::new(
+        law,
+        FeedforwardDrive {
+            travel_per_radian: S::of(R),
+            torque_constant: S::of(1.641),
+            period: S::of(T),
+        },
+    )
+    .expect("valid parameters")
 }
 
 fn estimator<S: Scalar>() -> MotionEstimator<S> {

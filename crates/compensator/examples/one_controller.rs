@@ -7,9 +7,9 @@
 use std::f64::consts::TAU;
 
 use compensator::{
-    Candidates, Combined, Compensator, FrictionFeedforward, MotionEstimator, MotionRecord,
-    NetworkCompensation, NoCompensation, ObserverGains, Reference, Sample, TransferFunction,
-    TransferFunctionError, TransferFunctionFit, identify_transfer_function,
+    Candidates, Combined, Compensator, FeedforwardDrive, FrictionFeedforward, MotionEstimator,
+    MotionRecord, NetworkCompensation, NoCompensation, ObserverGains, Reference, Sample,
+    TransferFunction, TransferFunctionError, TransferFunctionFit, identify_transfer_function,
 };
 use lugre::{LuGre, Parameters};
 
@@ -85,7 +85,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         viscous: 0.0298,
         ..Parameters::LIU_2025
     })?;
-    let feedforward = FrictionFeedforward::new(friction, R, KT, T)?;
+    let feedforward = FrictionFeedforward::new(
+        friction,
+        FeedforwardDrive {
+            travel_per_radian: R,
+            torque_constant: KT,
+            period: T,
+        },
+    )?;
     let fit = identify(&friction, NoCompensation)?;
     // What friction feed-forward leaves is another error: identified with it.
     let fit_on_top = identify(&friction, feedforward)?;

@@ -27,6 +27,8 @@ use crate::{CompensatorError, Sample};
 /// The default takes the scale as it is (α = 1), follows the wind-up rate
 /// within 20 cycles (β = 0.05) and averages the acceleration over 20 (γ = 0.05).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ObserverGains<T = f64> {
     /// α: weight of the scale in the position, 0 < α ≤ 1. 1: no smoothing.
     pub position: T,
@@ -119,6 +121,8 @@ impl<T: Scalar> ObserverGains<T> {
 
 /// What one unit (standard deviation) of white noise of the scale becomes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct NoiseGains<T = f64> {
     /// In the position estimate.
     pub position: T,

@@ -20,19 +20,30 @@ pub struct FrictionFeedforward<T = f64> {
     speed: T,
 }
 
+/// The drive that a [`FrictionFeedforward`] is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+pub struct FeedforwardDrive<T = f64> {
+    /// Load travel per radian of the law's coordinate r = lead/2π, m/rad, from 1e-9 to 1e3.
+    pub travel_per_radian: T,
+    /// Torque constant K_t, N·m/A, from 1e-9 to 1e9.
+    pub torque_constant: T,
+    /// Control period, s, from 1e-9 to 1e3.
+    pub period: T,
+}
+
 impl<T: Exponential> FrictionFeedforward<T> {
-    /// Friction `law` at the screw (N·m over rad/s); `travel_per_radian`
-    /// r = lead/2π (from 1e-9 to 1e3 m/rad); `torque_constant` K_t (from 1e-9
-    /// to 1e9 N·m/A); control `period` (from 1e-9 to 1e3 s).
+    /// Friction `law` at the screw (N·m over rad/s) of a drive.
     ///
     /// # Errors
     /// [`CompensatorError::Setting`] for a value outside its range.
-    pub fn new(
-        law: LuGre<T>,
-        travel_per_radian: T,
-        torque_constant: T,
-        period: T,
-    ) -> Result<Self, CompensatorError> {
+    pub fn new(law: LuGre<T>, drive: FeedforwardDrive<T>) -> Result<Self, CompensatorError> {
+        let FeedforwardDrive {
+            travel_per_radian,
+            torque_constant,
+            period,
+        } = drive;
         let inside = within(torque_constant, 1e-9, 1e9);
         let valid = "from 1e-9 to 1e9 N·m/A";
         let torque_constant = require(inside, "torque_constant", torque_constant, valid)?;

@@ -20,6 +20,8 @@ use crate::{Compensator, CompensatorError, Correction, Sample};
 
 /// What a guard keeps to.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct GuardLimits<T = f64> {
     /// Greatest offset of the position, m or rad.
     pub position: T,

@@ -38,6 +38,8 @@ pub struct MotionRecord<'a> {
 /// What [`identify_transfer_function`] tries: every order up to the largest,
 /// with and without direct feed-through, on every cycle of poles.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Candidates {
     /// Largest order, 1 to [`MAX_ORDER`](crate::MAX_ORDER).
     pub max_order: usize,
@@ -68,6 +70,8 @@ impl Candidates {
 
 /// One candidate's result.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Trial {
     /// Cycle of poles.
     pub poles: Vec<f64>,
@@ -90,6 +94,8 @@ impl Trial {
 
 /// What was identified.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct TransferFunctionFit {
     /// The model chosen.
     pub model: TransferFunctionModel,

@@ -43,17 +43,21 @@
 //! or train networks.
 //!
 //! ```
-//! use compensator::{Combined, Compensator, FrictionFeedforward, NoCompensation, Sample};
+//! use compensator::{
+//!     Combined, Compensator, FeedforwardDrive, FrictionFeedforward, NoCompensation, Sample,
+//! };
 //! use lugre::{LuGre, Parameters};
 //!
 //! let friction = LuGre::new(Parameters {
 //!     viscous: 0.0298,
 //!     ..Parameters::LIU_2025
 //! })?;
-//! let mut law = Combined::new(
-//!     NoCompensation,
-//!     FrictionFeedforward::new(friction, 0.01 / std::f64::consts::TAU, 1.641, 1e-4)?,
-//! );
+//! let drive = FeedforwardDrive {
+//!     travel_per_radian: 0.01 / std::f64::consts::TAU, // m/rad
+//!     torque_constant: 1.641,                          // N·m/A
+//!     period: 1e-4,                                    // s
+//! };
+//! let mut law = Combined::new(NoCompensation, FrictionFeedforward::new(friction, drive)?);
 //! // At 100 mm/s, after the bristles have settled, friction asks for T/K_t.
 //! let mut sample = Sample::default();
 //! sample.reference.velocity = 0.1;
@@ -91,6 +95,8 @@ mod plan;
 mod remainder;
 mod residual;
 mod sample;
+#[cfg(feature = "serde")]
+mod stored;
 mod transfer_function;
 mod warmed;
 
@@ -113,7 +119,7 @@ pub use feedback::{
     Deviations, Feedback, Gains as FeedbackGains, MOST_MEASURED, MOST_STATES, Node as FeedbackNode,
     PlanWithFeedback, States,
 };
-pub use friction::FrictionFeedforward;
+pub use friction::{FeedforwardDrive, FrictionFeedforward};
 pub use guard::{Guard, GuardLimits, Guarded, Status, Trip};
 #[cfg(feature = "identify")]
 pub use identify::{

@@ -22,6 +22,21 @@ pub const MAX_ORDER: usize = 16;
 /// Laguerre's functions), so the model is linear in c and d, and stable
 /// whatever they are. Plain numbers, immutable; the caller stores them.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        try_from = "crate::stored::StoredModel<T>",
+        into = "crate::stored::StoredModel<T>"
+    )
+)]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: Scalar + serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub struct TransferFunctionModel<T = f64> {
     period: T,
     direct: T,

@@ -6,8 +6,8 @@
 
 use cfnn::{Network, Predictor, Scaling, Shape};
 use compensator::{
-    Combined, Compensator, FrictionFeedforward, MotionEstimator, NetworkCompensation,
-    ObserverGains, Reference, Sample, TransferFunction, TransferFunctionModel,
+    Combined, Compensator, FeedforwardDrive, FrictionFeedforward, MotionEstimator,
+    NetworkCompensation, ObserverGains, Reference, Sample, TransferFunction, TransferFunctionModel,
 };
 use lugre::{LuGre, Parameters};
 
@@ -83,7 +83,15 @@ fn samples() -> Vec<Sample> {
 
 fn strategies() -> Vec<Box<dyn Compensator>> {
     let law = LuGre::new(Parameters::LIU_2025).expect("valid");
-    let friction = FrictionFeedforward::new(law, R, 1.641, T).expect("valid");
+    let friction = FrictionFeedforward::new(
+        law,
+        FeedforwardDrive {
+            travel_per_radian: R,
+            torque_constant: 1.641,
+            period: T,
+        },
+    )
+    .expect("valid");
     let gains = ObserverGains::critically_damped(5.0).expect("valid");
     let estimators = [ObserverGains::default(), gains]
         .map(|gains| MotionEstimator::new(R, T, gains).expect("valid"));

@@ -1,8 +1,8 @@
 //! Friction feed-forward, none, and sums.
 
 use compensator::{
-    Combined, Compensator, CompensatorError, Correction, FrictionFeedforward, NoCompensation,
-    Reference, Sample,
+    Combined, Compensator, CompensatorError, Correction, FeedforwardDrive, FrictionFeedforward,
+    NoCompensation, Reference, Sample,
 };
 use lugre::{LuGre, Parameters};
 use proptest::prelude::*;
@@ -19,7 +19,15 @@ fn law() -> LuGre {
 }
 
 fn friction() -> FrictionFeedforward {
-    FrictionFeedforward::new(law(), R, KT, 1e-4).unwrap()
+    FrictionFeedforward::new(
+        law(),
+        FeedforwardDrive {
+            travel_per_radian: R,
+            torque_constant: KT,
+            period: 1e-4,
+        },
+    )
+    .unwrap()
 }
 
 fn moving(velocity: f64) -> Sample {
@@ -95,7 +103,14 @@ fn combined_resets_both() {
 
 #[test]
 fn invalid_settings_are_refused() {
-    let refused = |r, kt, period| match FrictionFeedforward::new(law(), r, kt, period) {
+    let refused = |r, kt, period| match FrictionFeedforward::new(
+        law(),
+        FeedforwardDrive {
+            travel_per_radian: r,
+            torque_constant: kt,
+            period,
+        },
+    ) {
         Err(CompensatorError::Setting { name, .. }) => name,
         other => panic!("{other:?}"),
     };

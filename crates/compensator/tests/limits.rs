@@ -4,9 +4,9 @@
 #![cfg(feature = "identify")]
 
 use compensator::{
-    Candidates, Combined, Compensator, FrictionFeedforward, MotionEstimator, MotionRecord,
-    NetworkCompensation, NoCompensation, ObserverGains, Reference, Sample, TransferFunction,
-    TransferFunctionError, TransferFunctionModel, identify_transfer_function,
+    Candidates, Combined, Compensator, FeedforwardDrive, FrictionFeedforward, MotionEstimator,
+    MotionRecord, NetworkCompensation, NoCompensation, ObserverGains, Reference, Sample,
+    TransferFunction, TransferFunctionError, TransferFunctionModel, identify_transfer_function,
 };
 use lugre::{LuGre, Parameters};
 use proptest::prelude::*;
@@ -97,7 +97,7 @@ proptest! {
                 prop_assert!(is_sound(NetworkCompensation::new(model, estimator), &samples));
             }
         }
-        if let Ok(friction) = FrictionFeedforward::new(law(), v[0], v[1], v[2]) {
+        if let Ok(friction) = FrictionFeedforward::new(law(), FeedforwardDrive { travel_per_radian: v[0], torque_constant: v[1], period: v[2] }) {
             prop_assert!(is_sound(Combined::new(NoCompensation, friction), &samples));
         }
         let coefficients = vec![v[3]; poles.len()];
@@ -175,7 +175,15 @@ fn absurd_settings_are_refused_with_the_limit() {
         MotionEstimator::new(1e-300, 1e-4, ObserverGains::default()).map(drop),
         MotionEstimator::new(1e-3, 1e-12, ObserverGains::default()).map(drop),
         ObserverGains::critically_damped(1e17).map(drop),
-        FrictionFeedforward::new(law(), 1e-3, 1e-310, 1e-4).map(drop),
+        FrictionFeedforward::new(
+            law(),
+            FeedforwardDrive {
+                travel_per_radian: 1e-3,
+                torque_constant: 1e-310,
+                period: 1e-4,
+            },
+        )
+        .map(drop),
         TransferFunctionModel::new(1e4, 0.0, &[], &[]).map(drop),
         TransferFunctionModel::new(1e-4, 0.0, &[], &[])
             .and_then(|model| TransferFunction::with_lead(model, 1e300))

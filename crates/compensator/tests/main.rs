@@ -21,6 +21,8 @@ mod limits;
 mod network;
 mod residual;
 mod single_precision;
+#[cfg(feature = "serde")]
+mod stored;
 #[cfg(feature = "alloc")]
 mod transfer_function;
 mod warm;

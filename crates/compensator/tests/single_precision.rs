@@ -5,8 +5,9 @@
 
 use cfnn::{FixedNetwork, NetworkScalar, ScalingRange, packed_len};
 use compensator::{
-    Combined, Compensator, Correction, FrictionFeedforward, MotionEstimator, NetworkCompensation,
-    NoCompensation, ObserverGains, Reference, Sample, TransferFunction, TransferFunctionModel,
+    Combined, Compensator, Correction, FeedforwardDrive, FrictionFeedforward, MotionEstimator,
+    NetworkCompensation, NoCompensation, ObserverGains, Reference, Sample, TransferFunction,
+    TransferFunctionModel,
 };
 use lugre::{Exponential, LuGre, Parameters};
 use trajectories::{Limits, Motion, SCurve};
@@ -87,7 +88,15 @@ fn units(name: &str, value: f64, size: f64) -> f64 {
 fn friction<S: Exponential>() -> FrictionFeedforward<S> {
     let law = LuGre::new(Parameters::LIU_2025.cast::<f32>().cast()).unwrap();
     let of = |x: f32| S::of(f64::from(x));
-    FrictionFeedforward::new(law, of(R), of(KT), of(T)).unwrap()
+    FrictionFeedforward::new(
+        law,
+        FeedforwardDrive {
+            travel_per_radian: of(R),
+            torque_constant: of(KT),
+            period: of(T),
+        },
+    )
+    .unwrap()
 }
 
 fn model() -> TransferFunctionModel<f32> {

@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut row = format!("{:8.0}", 1e3 * x);
         for coupling in [NutCoupling::ShapeFunctions, NutCoupling::MovingNode] {
             row.push_str("  ");
-            for w in &drive.modes(x, coupling)?.frequencies[1..5] {
+            for w in &drive.modes(x, coupling)?.frequencies_rad_s[1..5] {
                 row.push_str(&format!("{:8.2}", w / TAU));
             }
         }

@@ -6,6 +6,11 @@ use crate::error::positive;
 
 /// Which ends of a screw are held along its axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum Mounting {
     /// The driven end, x = 0, alone.
     FixedFree,
@@ -15,6 +20,8 @@ pub enum Mounting {
 
 /// What holds the screw of a [`FeedDrive`](crate::FeedDrive) along its axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct AxialSupport {
     /// Axial stiffness of each bearing that holds the screw, N/m.
     pub bearing_stiffness: f64,

@@ -7,6 +7,8 @@ use crate::{AxialSupport, DriveError, ScrewShaft};
 
 /// Everything that makes a drive. SI units.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct DriveParameters {
     /// Cross-section of the screw.
     pub section: CrossSection,
@@ -39,6 +41,14 @@ pub struct DriveParameters {
 
 /// A ball-screw feed drive: immutable, shared by any number of simulations.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        try_from = "crate::stored::StoredDrive",
+        into = "crate::stored::StoredDrive"
+    )
+)]
 pub struct FeedDrive {
     parameters: DriveParameters,
     /// The shaft along its axis, on its bearings.

@@ -84,9 +84,9 @@
 //!     stiffness_damping: 1e-5,
 //! })?;
 //! let modes = drive.modes(0.6, NutCoupling::ShapeFunctions)?;
-//! assert_eq!(modes.frequencies.len(), 14);
-//! assert!(modes.frequencies[0] < 1e-3); // the axis is free to move
-//! println!("first elastic mode: {:.1} Hz", modes.frequencies[1] / std::f64::consts::TAU);
+//! assert_eq!(modes.frequencies_rad_s.len(), 14);
+//! assert!(modes.frequencies_rad_s[0] < 1e-3); // the axis is free to move
+//! println!("first elastic mode: {:.1} Hz", modes.frequencies_rad_s[1] / std::f64::consts::TAU);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -127,6 +127,8 @@ mod response;
 mod rigid;
 mod state_space;
 mod stepper;
+#[cfg(feature = "serde")]
+mod stored;
 
 pub use axial::{AxialSupport, Mounting, ScrewShaft};
 pub use drive::{DriveParameters, FeedDrive};

@@ -9,6 +9,11 @@ use crate::{DriveError, DriveParameters, FeedDrive};
 
 /// How the nut meets the screw's mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum NutCoupling {
     /// A fixed mesh; the nut acts between its nodes through the linear shape
     /// functions of the element that it is in. Continuous in x.

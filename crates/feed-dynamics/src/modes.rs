@@ -8,7 +8,7 @@ use crate::{DriveError, FeedDrive, NutCoupling};
 #[derive(Clone, Debug)]
 pub struct DriveModes {
     /// Angular frequencies, rad/s, ascending; the first is the rigid motion, 0.
-    pub frequencies: Vec<f64>,
+    pub frequencies_rad_s: Vec<f64>,
     /// Damping ratios ζ = βω/2 of the same modes; 0 for the rigid motion.
     pub damping_ratios: Vec<f64>,
     /// Mass-normalised shapes, one a column, rows as in [`crate::DriveMatrices`].
@@ -27,7 +27,7 @@ impl FeedDrive {
         let damping_ratios = modes.frequencies_rad_s.iter().map(|w| 0.5 * beta * w);
         Ok(DriveModes {
             damping_ratios: damping_ratios.collect(),
-            frequencies: modes.frequencies_rad_s,
+            frequencies_rad_s: modes.frequencies_rad_s,
             shapes: modes.shapes,
         })
     }

@@ -7,6 +7,11 @@ use crate::{DriveError, FeedDrive, NutCoupling};
 
 /// A coordinate where the drive is driven or observed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum Coordinate {
     /// Rotation of the motor (rad), driven by a torque (N·m).
     Motor,

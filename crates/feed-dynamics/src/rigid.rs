@@ -10,6 +10,14 @@ use crate::{DriveError, NutErrors, Observation, Settled, StepReport, TableMotion
 /// m ÿ = T / r − load,   θ = y / r
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        try_from = "crate::stored::StoredRigidDrive",
+        into = "crate::stored::StoredRigidDrive"
+    )
+)]
 pub struct RigidDrive {
     inertia: f64,
     travel_per_radian: f64,
@@ -45,6 +53,11 @@ impl RigidDrive {
 
 /// How torque and load of a [`RigidStepper`] go over a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum ForceCourse {
     /// Those of its end act over the whole step:
     ///

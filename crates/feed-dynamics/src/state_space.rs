@@ -8,6 +8,11 @@ use crate::{Coordinate, DriveError, FeedDrive, NutCoupling};
 
 /// What is seen of a coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum Quantity {
     /// Displacement, m or rad.
     Displacement,

@@ -24,6 +24,8 @@ use axis_scalar::Scalar;
 /// # Ok::<(), foc_pmsm::FocError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct CurrentGains<T = f64> {
     /// Voltage per current error, V/A.
     pub kp: Dq<T>,

@@ -8,6 +8,11 @@ use axis_scalar::Scalar;
 
 /// Which currents the induced voltage is computed from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum DecouplingCurrent {
     /// Those measured: the axes are decoupled also while the currents change. A delay
     /// of the voltage turns part of it into feedback of the wrong phase, which is little

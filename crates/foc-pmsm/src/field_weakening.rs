@@ -9,6 +9,8 @@ use axis_scalar::Scalar;
 /// The constants of [`FieldWeakening`]. Plain data; [`FieldWeakening::new`]
 /// validates them.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct FieldWeakeningParameters<T = f64> {
     /// k: the share of the available voltage that is aimed at, greater than 0
     /// and less than 1. What it leaves is the current controllers' to move in.

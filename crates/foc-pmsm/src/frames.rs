@@ -11,6 +11,8 @@ const SQRT_3_HALF: f64 = 0.866_025_403_784_438_6;
 
 /// The three phase quantities, in V or A.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Phases<T = f64> {
     /// Phase a.
     pub a: T,
@@ -22,6 +24,8 @@ pub struct Phases<T = f64> {
 
 /// A space vector in the stator's frame, in V or A.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct AlphaBeta<T = f64> {
     /// Along the axis of phase a.
     pub alpha: T,
@@ -31,6 +35,8 @@ pub struct AlphaBeta<T = f64> {
 
 /// A space vector in the rotor's frame, in V or A.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Dq<T = f64> {
     /// Direct axis, along the magnets' flux.
     pub d: T,

@@ -7,6 +7,8 @@ use axis_scalar::Scalar;
 /// all finite and 0 or more. Symbols of Liu et al. 2025, Table 4
 /// (doi 10.3390/machines13050433).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ServoGains<T = f64> {
     /// P_Sw: motor speed per position error, (rad/s)/m.
     pub position: T,
@@ -26,6 +28,8 @@ pub struct ServoGains<T = f64> {
 
 /// The limits of the cascade, greater than 0 (infinity: none).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ServoLimits<T = f64> {
     /// Length of the current reference, A: with i_d = 0 the magnitude of the
     /// q current reference.

@@ -130,13 +130,13 @@ mod dead_time;
 mod decoupling;
 mod delay;
 mod error;
-mod exact;
 mod field_weakening;
 mod frames;
 mod gains;
 pub mod inverter;
 mod linear_motor;
 mod math;
+mod matrix_exponential;
 mod motor;
 mod operating;
 mod pi;
@@ -144,6 +144,8 @@ pub mod saturation;
 pub mod sensorless;
 mod servo;
 mod signals;
+#[cfg(feature = "serde")]
+mod stored;
 pub mod svpwm;
 
 pub use current_gains::CurrentGains;

@@ -8,6 +8,8 @@ use axis_scalar::Scalar;
 
 /// The constants of a linear motor. Plain data; [`LinearMotor::new`] validates them.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct LinearMotorParameters<T = f64> {
     /// Pole pitch τ_p, m, greater than 0: from a north pole to the next south pole, half a
     /// turn of the electrical angle. Data sheets may state the magnet period 2 τ_p.
@@ -68,6 +70,8 @@ pub struct LinearMotor<T = f64> {
 
 /// The currents of a force, as [`LinearMotor::operating_currents`] finds them.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct LinearOperatingCurrents<T = f64> {
     /// Current references, A.
     pub current: Dq<T>,

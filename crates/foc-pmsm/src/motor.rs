@@ -1,12 +1,14 @@
 //! The permanent-magnet synchronous motor in the rotor's frame.
 
 use crate::error::{FocError, check, not_negative, positive};
-use crate::exact::exponential_increment;
 use crate::frames::Dq;
+use crate::matrix_exponential::exponential_increment;
 use axis_scalar::Scalar;
 
 /// The motor's constants. Plain data; [`Pmsm::new`] validates them.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct MotorParameters<T = f64> {
     /// Pole pairs p, 1 or more.
     pub pole_pairs: u32,
@@ -44,6 +46,18 @@ impl<T: Scalar> MotorParameters<T> {
 /// T = 1.5 p (ψ i_q + (L_d − L_q) i_d i_q)
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(try_from = "MotorParameters<T>", into = "MotorParameters<T>")
+)]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: Scalar + serde::Serialize",
+        deserialize = "T: Scalar + serde::Deserialize<'de>"
+    ))
+)]
 pub struct Pmsm<T = f64> {
     parameters: MotorParameters<T>,
     pole_pairs: T,

@@ -5,6 +5,8 @@ use axis_scalar::Scalar;
 
 /// The constants of a [`Pi`]. Plain data; [`Pi::new`] validates them.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct PiParameters<T = f64> {
     /// Proportional gain, output unit per error unit, 0 or more.
     pub kp: T,
@@ -19,6 +21,11 @@ pub struct PiParameters<T = f64> {
 
 /// What becomes of the integral while the output is at its limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum AntiWindup<T = f64> {
     /// Conditional integration: the integral keeps its old value in a period
     /// in which the output saturates and the error would drive it further

@@ -15,6 +15,8 @@ use axis_scalar::Scalar;
 /// Incremental inductances ∂λ/∂i of the stator, H. A machine without losses in its iron
 /// has dq = qd.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct IncrementalInductances<T = f64> {
     /// ∂λ_d/∂i_d.
     pub dd: T,

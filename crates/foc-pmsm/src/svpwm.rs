@@ -30,6 +30,11 @@ pub struct Duties<T = f64> {
 /// Hava, Sul, Kerkman and Lipo, "Dynamic overmodulation characteristics of
 /// triangle intersection PWM methods", IEEE Trans. Ind. Appl. 35 (1999).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum Overmodulation {
     /// Minimum phase error: shortened to the hexagon at the same angle. The
     /// fundamental of a turning vector grows to √3 ln 3/π U_dc = 0.6057 U_dc.

@@ -19,6 +19,8 @@ mod saturation;
 mod sensorless;
 mod servo;
 mod single;
+#[cfg(feature = "serde")]
+mod stored;
 mod svpwm;
 mod total;
 mod total_drive;

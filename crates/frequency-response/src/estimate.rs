@@ -52,6 +52,11 @@ pub struct Record<'a> {
 
 /// How a response is estimated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum Estimator {
     /// By the excitation: no bias in closed loop.
     #[default]
@@ -64,10 +69,13 @@ pub enum Estimator {
 
 /// The response on one line.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ResponseLine {
     /// Hz.
     pub frequency_hz: f64,
     /// Output per input.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored::complex"))]
     pub value: Complex<f64>,
     /// Standard deviation of its error in each direction of the complex plane.
     pub deviation: f64,
@@ -79,6 +87,8 @@ pub struct ResponseLine {
 
 /// A frequency response with its uncertainty.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct FrequencyResponse {
     /// Lines, from low to high frequency, as far as they are excited.
     pub lines: Vec<ResponseLine>,

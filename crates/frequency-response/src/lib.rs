@@ -37,6 +37,8 @@ mod excitation;
 mod fit;
 mod margins;
 mod segments;
+#[cfg(feature = "serde")]
+mod stored;
 
 pub use axis_fourier::Complex;
 pub use error::ResponseError;

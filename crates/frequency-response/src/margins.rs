@@ -8,10 +8,13 @@ use crate::error::ResponseError;
 
 /// An open loop L on one line: stable with negative feedback where it keeps clear of −1.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct LoopLine {
     /// Hz.
     pub frequency_hz: f64,
     /// L.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored::complex"))]
     pub value: Complex<f64>,
     /// Standard deviation of its error in each direction of the complex plane.
     pub deviation: f64,
@@ -19,6 +22,8 @@ pub struct LoopLine {
 
 /// The maximum sensitivity, 1/|1 + L|.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct SensitivityPeak {
     /// Its height.
     pub value: f64,
@@ -34,6 +39,8 @@ pub struct SensitivityPeak {
 /// They mean what margins do where the loop is stable, which lines from a machine that runs show: it
 /// does so with its present gains. With others, Nyquist's criterion has to be asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct LoopMargins {
     /// Maximum sensitivity on the lines.
     pub sensitivity: SensitivityPeak,

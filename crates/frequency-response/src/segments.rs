@@ -9,6 +9,11 @@ use crate::error::ResponseError;
 
 /// How a record is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum Averaging {
     /// Segments of so many samples under Hann's window, each half over the next: for any signal. The
     /// lines are the sampling rate over the segment apart.

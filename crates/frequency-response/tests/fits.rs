@@ -29,25 +29,26 @@ fn response(
     FrequencyResponse::of(&record, Estimator::ThreeSignals, averaging).unwrap()
 }
 
-/// Without noise the mode, its damping, its residue and the delay come out as they are. Found: to rounding,
-/// 1e-14 Hz and 1e-13 of the damping; bounds are a thousand times that, for other processors.
-#[test]
-fn a_response_without_noise_is_found() {
-    let machine = Machine::default();
+pub fn fit_without_noise(machine: Machine) -> ModalFit {
     let periods = Averaging::Periods {
         period: 1023,
         skip: 6,
     };
     let found = response(machine, 0.0, 1, periods, 10);
-    let fit = ModalFit::of(
-        &found,
-        &FitSettings {
-            most_poles: 5,
-            most_delay_s: 4e-3,
-            ..FitSettings::default()
-        },
-    )
-    .unwrap();
+    let settings = FitSettings {
+        most_poles: 5,
+        most_delay_s: 4e-3,
+        ..FitSettings::default()
+    };
+    ModalFit::of(&found, &settings).unwrap()
+}
+
+/// Without noise the mode, its damping, its residue and the delay come out as they are. Found: to rounding,
+/// 1e-14 Hz and 1e-13 of the damping; bounds are a thousand times that, for other processors.
+#[test]
+fn a_response_without_noise_is_found() {
+    let machine = Machine::default();
+    let fit = fit_without_noise(machine);
     let mode = fit.modes[0];
     assert_eq!(fit.modes.len(), 1);
     assert!((mode.frequency_hz.value - 63.0).abs() < 1e-10);

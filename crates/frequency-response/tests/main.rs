@@ -7,3 +7,5 @@ mod fits;
 mod machine;
 mod margins;
 mod refusals;
+#[cfg(feature = "serde")]
+mod stored;

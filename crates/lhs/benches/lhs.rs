@@ -3,7 +3,7 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use lhs::criteria::centred_discrepancy;
-use lhs::{Budget, LatinHypercube, Marginal, Normal, optimise};
+use lhs::{Budget, Halton, LatinHypercube, Marginal, Normal, Scrambling, Sobol, optimise};
 use std::hint::black_box;
 
 fn hypercube(n: usize) -> LatinHypercube {
@@ -28,6 +28,29 @@ fn designs(c: &mut Criterion) {
             black_box(&row);
         });
     });
+    group.finish();
+}
+
+fn sequences(c: &mut Criterion) {
+    let mut group = c.benchmark_group("sequence, 2^20 x 4");
+    for (name, sobol) in [
+        ("sobol", Sobol::new(4)),
+        ("sobol by Owen", Sobol::scrambled(4, Scrambling::Owen, 1)),
+        (
+            "sobol by matrix",
+            Sobol::scrambled(4, Scrambling::LinearMatrix, 1),
+        ),
+    ] {
+        let sobol = sobol.expect("4 variables");
+        group.bench_function(name, |b| b.iter(|| black_box(sobol.design(1 << 20))));
+    }
+    for (name, halton) in [
+        ("halton", Halton::new(4)),
+        ("halton permuted", Halton::scrambled(4, 1)),
+    ] {
+        let halton = halton.expect("4 variables");
+        group.bench_function(name, |b| b.iter(|| black_box(halton.design(1 << 20))));
+    }
     group.finish();
 }
 
@@ -68,5 +91,5 @@ fn marginals(c: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, designs, optimised, marginals);
+criterion_group!(benches, designs, sequences, optimised, marginals);
 criterion_main!(benches);

@@ -8,8 +8,9 @@ use lhs::criteria::{
     wrap_around_discrepancy,
 };
 use lhs::{
-    Augmentation, Budget, CorrelationMatrix, Criterion, Design, LatinHypercube, OrthogonalArray,
-    Placement, SlicedHypercube, rank_correlated, rank_correlation,
+    Augmentation, Budget, CorrelationMatrix, Criterion, Design, Halton, LatinHypercube,
+    OrthogonalArray, Placement, Scrambling, SlicedHypercube, Sobol, rank_correlated,
+    rank_correlation,
 };
 use std::io::Write;
 
@@ -34,7 +35,44 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         line("mst", &[tree.mean])?;
         line("spearman", &rank_correlation(&design))?;
     }
+    let mut line = |name: &str, quantity: &str, values: &[f64]| {
+        write!(out, "{name},{quantity}")?;
+        values.iter().try_for_each(|v| write!(out, ",{v:e}"))?;
+        writeln!(out)
+    };
+    for (name, sequence) in [
+        ("sobol", Sobol::new(64)?.design(512)?),
+        ("halton", Halton::new(64)?.design(512)?),
+    ] {
+        for row in sequence.rows() {
+            line(name, "sequence", row)?;
+        }
+    }
+    for (name, made) in scrambled() {
+        let discrepancies: Result<Vec<f64>, lhs::LhsError> = (0..SEEDS)
+            .map(|seed| Ok(centred_discrepancy(&made(seed)?)))
+            .collect();
+        line(name, "scrambled", &discrepancies?)?;
+    }
     Ok(())
+}
+
+/// Seeds of each scrambled sequence.
+const SEEDS: u64 = 100;
+
+type Made = fn(u64) -> Result<Design, lhs::LhsError>;
+
+/// 256 points in 6 variables.
+fn scrambled() -> [(&'static str, Made); 3] {
+    [
+        ("sobol by Owen", |seed| {
+            Sobol::scrambled(6, Scrambling::Owen, seed)?.design(256)
+        }),
+        ("sobol by matrix", |seed| {
+            Sobol::scrambled(6, Scrambling::LinearMatrix, seed)?.design(256)
+        }),
+        ("halton", |seed| Halton::scrambled(6, seed)?.design(256)),
+    ]
 }
 
 fn designs() -> Result<Vec<(&'static str, Design)>, lhs::LhsError> {

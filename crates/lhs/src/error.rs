@@ -29,6 +29,20 @@ pub enum LhsError {
         /// Rows that the design has.
         n: usize,
     },
+    /// A range of points of a sequence is empty, or leaves it.
+    #[error("points {start}..{end}: must be a non-empty range within 0..2^53")]
+    SequenceRows {
+        /// First point asked for.
+        start: u64,
+        /// One past the last point asked for.
+        end: u64,
+    },
+    /// A point that a sequence has not.
+    #[error("point {row}: must be below 2^53 = 9007199254740992")]
+    SequenceRow {
+        /// The point asked for, from 0.
+        row: u64,
+    },
     /// A row or a variable that the design has not, or a buffer of another
     /// length than a row.
     #[error("{what} {found}: must be {valid} {limit}")]

@@ -279,7 +279,7 @@ impl Fill<'_> {
 /// (Steele, Lea and Flood 2014, doi 10.1145/2714064.2660195), which can be
 /// computed alone.
 #[inline(always)]
-fn counter_hash(key: u64, counter: u64) -> u64 {
+pub(crate) fn counter_hash(key: u64, counter: u64) -> u64 {
     let mut z = key.wrapping_add(counter.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

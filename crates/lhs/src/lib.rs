@@ -23,7 +23,8 @@
 //! distance ([`LatinHypercube::optimised`]), even in every two variables
 //! ([`OrthogonalArray`]), Latin in parts as well ([`SlicedHypercube`]), with
 //! given rank correlations ([`rank_correlated`]), or around points that are
-//! there already ([`Augmentation`]). [`criteria`] has the figures to judge
+//! there already ([`Augmentation`]). Sequences go on without end: [`Sobol`] and [`Halton`], plain
+//! or scrambled, for means over the points. [`criteria`] has the figures to judge
 //! designs by, [`map`] and [`map_balanced`] bring them to physical values,
 //! integers and categories among them.
 //!
@@ -78,7 +79,7 @@
 //!
 //! # What it knows nothing of
 //! What the variables mean, the model that is run at the points, constraints
-//! between variables, low-discrepancy sequences (Sobol, Halton).
+//! between variables.
 
 #![cfg_attr(test, allow(clippy::disallowed_methods))]
 
@@ -90,6 +91,7 @@ mod design;
 mod discrepancies;
 mod distance;
 mod error;
+mod halton;
 mod hypercube;
 mod kernel;
 mod lattice;
@@ -98,7 +100,9 @@ mod optimise;
 mod orthogonal;
 mod permutation;
 mod power;
+mod sequence;
 mod sliced;
+mod sobol;
 #[cfg(feature = "serde")]
 mod stored;
 mod stratum;
@@ -107,6 +111,7 @@ pub use augment::{Augmentation, Augmented};
 pub use correlation::{CorrelationMatrix, RankCorrelated, rank_correlated, rank_correlation};
 pub use design::{Design, MAX_DIMS};
 pub use error::LhsError;
+pub use halton::Halton;
 pub use hypercube::{LatinHypercube, Placement};
 pub use marginals::{
     Cumulative, DesignVariable, Integers, Levels, LogUniform, Marginal, Mixture, Normal, Tabulated,
@@ -115,6 +120,7 @@ pub use marginals::{
 pub use optimise::{Budget, Criterion, MAXIMIN_P, OptimisationHistory, optimise};
 pub use orthogonal::{MAX_PRIME, OrthogonalArray};
 pub use sliced::{Sliced, SlicedHypercube};
+pub use sobol::{Scrambling, Sobol};
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

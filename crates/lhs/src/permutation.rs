@@ -33,6 +33,8 @@ pub(crate) enum Purpose {
     Augment = 4,
     Sliced = 5,
     Orthogonal = 6,
+    Sobol = 7,
+    Halton = 8,
 }
 
 /// The random stream of (`seed`, `purpose`, `index`). ChaCha8 is fixed by its

@@ -12,6 +12,7 @@ mod limits;
 mod marginals;
 mod optimise;
 mod orthogonal;
+mod sequences;
 mod sliced;
 #[cfg(feature = "serde")]
 mod stored;

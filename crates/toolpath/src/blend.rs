@@ -6,6 +6,11 @@ use crate::{Arc, Line, Nurbs, NurbsData, PathSegment};
 
 /// Shape of a blend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 #[non_exhaustive]
 pub enum Blend {
     /// A circular arc: its curvature jumps at both ends, so that a feed of limited jerk must

@@ -9,6 +9,8 @@ use crate::{Blend, Line, Path, PathSegment, ToolpathError};
 /// "G64 Path Blending", <https://linuxcnc.org/docs/html/gcode/g-code.html#gcode:g64>). A blend takes at most half of each line, so that it
 /// may be smaller than the tolerance allows.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct PathBlending {
     /// Greatest distance of the path from a corner, m.
     pub tolerance: f64,

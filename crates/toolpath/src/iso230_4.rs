@@ -18,6 +18,8 @@ use crate::vector::sub;
 
 /// The circle that was programmed.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct NominalCircle {
     /// Centre, m.
     pub centre: [f64; 2],
@@ -27,6 +29,8 @@ pub struct NominalCircle {
 
 /// Radial deviations of one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct DirectionFigures {
     /// Circular deviation G, m.
     pub g: f64,
@@ -40,6 +44,8 @@ pub struct DirectionFigures {
 
 /// Figures of a circle that was run in both directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct CircleFigures {
     /// Clockwise.
     pub clockwise: DirectionFigures,
@@ -57,6 +63,8 @@ pub struct CircleFigures {
 
 /// A circle by centre and radius, and how far the points lie off it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct FittedCircle {
     /// Centre, m.
     pub centre: [f64; 2],
@@ -369,6 +377,8 @@ fn solve<const N: usize, const M: usize>(mut a: [[f64; M]; N]) -> Option<[f64; N
 
 /// A peak of the radial deviation after the velocity of an axis was reversed.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct QuadrantGlitch {
     /// Axis that was reversed: 0 for X, 1 for Y.
     pub axis: usize,

@@ -73,6 +73,8 @@ mod path;
 mod point;
 mod quadrature;
 mod segment;
+#[cfg(feature = "serde")]
+mod stored;
 mod vector;
 
 pub use arc::Arc;

@@ -7,6 +7,11 @@ use crate::{Arc, Blend, Line, Nurbs, NurbsData, Path, PathSegment};
 
 /// Sense of a circle, seen against the third axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum Direction {
     /// From +X towards −Y (G2).
     Clockwise,
@@ -16,6 +21,8 @@ pub enum Direction {
 
 /// A circular test in the manner of ISO 230-4: a run-in, counted turns, a run-out.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct CircleTest {
     /// Centre, m.
     pub centre: [f64; 2],

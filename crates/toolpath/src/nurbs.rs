@@ -10,6 +10,14 @@ pub const MAX_DEGREE: usize = 15;
 
 /// What makes a [`Nurbs`].
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        try_from = "crate::stored::StoredNurbs",
+        into = "crate::stored::StoredNurbs"
+    )
+)]
 pub struct NurbsData<const D: usize> {
     /// Degree p, from 1 to [`MAX_DEGREE`].
     pub degree: usize,

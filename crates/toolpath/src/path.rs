@@ -6,6 +6,8 @@ use crate::{PathPoint, PathSegment};
 
 /// How far two segments that meet may differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct PathTolerances {
     /// Greatest distance between the end of a segment and the begin of the next, m; at most 1e-3.
     pub position: f64,
@@ -38,6 +40,11 @@ pub struct Junction<const D: usize> {
 
 /// The lowest derivative that jumps at a junction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 #[non_exhaustive]
 pub enum JunctionKind {
     /// The tangent: the feed must be zero here.

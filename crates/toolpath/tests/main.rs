@@ -10,3 +10,5 @@ mod feed;
 #[cfg(feature = "gcode")]
 mod gcode;
 mod geometry;
+#[cfg(feature = "serde")]
+mod stored;

@@ -60,7 +60,7 @@ pub enum TrajectoryError {
 /// `value` (m) if it lies within [`maximum::POSITION`] of zero.
 pub(crate) fn position<T: Scalar>(field: &'static str, value: T) -> Result<T, TrajectoryError> {
     let inside = value.abs() <= T::of(maximum::POSITION);
-    check(inside, field, value, "m", "from -1e6 to 1e6")
+    check(inside, field, value, "m", "from -1e9 to 1e9")
 }
 
 /// `value` if its magnitude is at most `most`.

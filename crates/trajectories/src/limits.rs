@@ -28,7 +28,7 @@ impl<T: Scalar> Limits<T> {
                 "velocity",
                 v,
                 "m/s",
-                "greater than zero and at most 1e6",
+                "greater than zero and at most 1e9",
             )?,
             acceleration: check(
                 inside(a, maximum::ACCELERATION),

@@ -2,13 +2,15 @@
 //!
 //! They lie far beyond any machine, so that no true motion is refused, and are there so that
 //! whoever steps through a motion, or counts its cycles, comes to an end: a frequency mistaken by
-//! its unit is told at once. The fastest linear-motor axes reach about 10 m/s, 10³ m/s² and
+//! its unit is told at once. A motion may be in counts of an encoder too. The fastest linear-motor axes reach about 10 m/s, 10³ m/s² and
 //! 10⁶ m/s³, over tens of metres; tests of their dynamics end at some kHz.
 
-/// Greatest distance of a position from zero, and greatest amplitude, m: 1000 km.
-pub const POSITION: f64 = 1e6;
-/// Greatest velocity limit, m/s.
-pub const VELOCITY: f64 = 1e6;
+/// Greatest distance of a position from zero, and greatest amplitude, m, or counts of an encoder: 60
+/// turns of one of 24 bits. What bounds the work of whoever steps through a motion is its
+/// [`DURATION`], whatever the unit.
+pub const POSITION: f64 = 1e9;
+/// Greatest velocity limit, m/s, or counts/s: 60 turns/s at 24 bits.
+pub const VELOCITY: f64 = 1e9;
 /// Greatest acceleration limit, m/s².
 pub const ACCELERATION: f64 = 1e9;
 /// Greatest jerk limit, m/s³; as good as none.

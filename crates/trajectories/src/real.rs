@@ -31,21 +31,13 @@ pub trait Real: Scalar {
     #[must_use]
     fn count(number: u32) -> Self;
 
-    /// `ln(1 + x)`, without cancellation near 0.
-    #[must_use]
-    fn ln_1p(self) -> Self;
-
-    /// `√(x² + y²)`, without overflow on the way.
-    #[must_use]
-    fn hypot(self, other: Self) -> Self;
-
     /// Sine and cosine of 2π times a number from 0 to 1.
     #[must_use]
     fn sin_cos_turn(self) -> (Self, Self);
 }
 
 macro_rules! real {
-    ($t:ident, $log1p:ident, $hypot:path, $turn:path, $cycles:literal, $margin:literal, $end:literal) => {
+    ($t:ident, $turn:path, $cycles:literal, $margin:literal, $end:literal) => {
         impl Real for $t {
             const MAX_CYCLES: Self = $cycles;
             const VALID_CYCLES: &'static str = concat!("at most ", stringify!($cycles));
@@ -63,16 +55,6 @@ macro_rules! real {
             }
 
             #[inline]
-            fn ln_1p(self) -> Self {
-                libm::$log1p(self)
-            }
-
-            #[inline]
-            fn hypot(self, other: Self) -> Self {
-                $hypot(self, other)
-            }
-
-            #[inline]
             fn sin_cos_turn(self) -> (Self, Self) {
                 $turn(self)
             }
@@ -80,9 +62,9 @@ macro_rules! real {
     };
 }
 
-real!(f64, log1p, libm::hypot, turn_f64, 1e9, 1e-12, 1e-13);
-// libm's hypotf and sincosf compute in f64, which a controller does in software.
-real!(f32, log1pf, hypot_f32, turn_f32, 1e4, 1e-5, 5e-7);
+real!(f64, turn_f64, 1e9, 1e-12, 1e-13);
+// libm's sincosf computes in f64, which a controller does in software.
+real!(f32, turn_f32, 1e4, 1e-5, 5e-7);
 
 #[inline]
 fn turn_f64(x: f64) -> (f64, f64) {
@@ -107,17 +89,6 @@ fn turn_f32(x: f32) -> (f32, f32) {
     }
 }
 
-#[inline]
-fn hypot_f32(x: f32, y: f32) -> f32 {
-    let (x, y) = (x.abs(), y.abs());
-    let (large, small) = if x < y { (y, x) } else { (x, y) };
-    if large == 0.0 || !large.is_finite() {
-        return large + small;
-    }
-    let ratio = small / large;
-    large * libm::sqrtf(1.0 + ratio * ratio)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -137,22 +108,5 @@ mod tests {
         assert_eq!(0.0_f32.sin_cos_turn(), (0.0, 1.0));
         assert_eq!(0.25_f32.sin_cos_turn(), (1.0, 0.0));
         assert!(f32::NAN.sin_cos_turn().0.is_nan());
-    }
-
-    #[test]
-    fn lengths_of_single_precision_are_those_of_double() {
-        for (x, y) in [
-            (3.0, 4.0),
-            (-1e-30, 2e-30),
-            (2e38, -1e38),
-            (0.0, 0.0),
-            (7.0, 0.0),
-        ] {
-            let exact = libm::hypot(f64::from(x), f64::from(y));
-            let off = (f64::from(hypot_f32(x, y)) - exact).abs();
-            assert!(off <= 2.0 * f64::from(f32::EPSILON) * exact, "{x} {y}");
-        }
-        assert_eq!(hypot_f32(f32::INFINITY, 1.0), f32::INFINITY);
-        assert!(hypot_f32(f32::NAN, 1.0).is_nan() && hypot_f32(1.0, f32::NAN).is_nan());
     }
 }

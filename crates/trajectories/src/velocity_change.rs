@@ -139,8 +139,8 @@ impl<T: Real> VelocityChange<T> {
         };
         position("position", start.position)?;
         let fast = maximum::VELOCITY;
-        bounded("velocity", start.velocity, fast, "m/s", "from -1e6 to 1e6")?;
-        bounded("target velocity", velocity, fast, "m/s", "from -1e6 to 1e6")?;
+        bounded("velocity", start.velocity, fast, "m/s", "from -1e9 to 1e9")?;
+        bounded("target velocity", velocity, fast, "m/s", "from -1e9 to 1e9")?;
         bounded(
             "acceleration",
             start.acceleration,

@@ -394,7 +394,7 @@ fn misuse_is_named() {
     let error = SCurve::plan(0.0, f64::NAN, &limits).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "to is NaN m, but must be from -1e6 to 1e6"
+        "to is NaN m, but must be from -1e9 to 1e9"
     );
     let slow = Limits::new(1e-3, 1.0, 1.0).unwrap();
     let error = SCurve::plan(0.0, 1e5, &slow).unwrap_err();
@@ -411,4 +411,21 @@ fn misuse_is_named() {
         matches!(error, TrajectoryError::Unrepresentable { .. }),
         "{error}"
     );
+}
+
+/// In counts of an encoder with 20 bits: 30 turns at 50 turns/s. With a constant stretch of the
+/// velocity and of the acceleration the least time is d/v + v/a + a/j.
+#[test]
+fn counts_of_an_encoder_are_positions() {
+    let turn = f64::from(1 << 20);
+    let (d, v, a, j) = (30.0 * turn, 50.0 * turn, 950.0 * turn, 5e4 * turn);
+    let limits = Limits::new(v, a, j).unwrap();
+    let motion = SCurve::plan(-1.5e6, -1.5e6 + d, &limits).unwrap();
+    let least = d / v + v / a + a / j;
+    assert!(
+        (motion.duration() - least).abs() < 1e-14 * least,
+        "{}",
+        motion.duration()
+    );
+    assert_eq!(motion.at(motion.duration()).position, -1.5e6 + d);
 }

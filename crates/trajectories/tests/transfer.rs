@@ -507,9 +507,9 @@ proptest! {
         // Any exponents, so that most are taken.
         let tame = |y: f32, most: f32| if y.is_finite() { y.abs().min(most).max(1e-30) } else { 1.0 };
         let change = VelocityLimits::new(-tame(y[0], 1e9), tame(y[1], 1e9), tame(y[2], 1e15)).unwrap();
-        let limits = TransferLimits::new(-tame(y[3], 1e6), tame(y[3], 1e6), change).unwrap();
-        let start = Setpoint { position: 0.0_f32, velocity: tame(y[4], 1e6), ..Setpoint::default() };
-        if let Ok(plan) = Transfer::plan(&start, &Setpoint::at_rest(tame(y[5], 1e6)), &limits) {
+        let limits = TransferLimits::new(-tame(y[3], 1e9), tame(y[3], 1e9), change).unwrap();
+        let start = Setpoint { position: 0.0_f32, velocity: tame(y[4], 1e9), ..Setpoint::default() };
+        if let Ok(plan) = Transfer::plan(&start, &Setpoint::at_rest(tame(y[5], 1e9)), &limits) {
             prop_assert!(plan.duration().is_finite());
             prop_assert!(!plan.at(0.5 * plan.duration()).position.is_nan());
         }

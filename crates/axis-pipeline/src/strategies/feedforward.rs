@@ -1,7 +1,7 @@
 //! Friction feed-forward on an axis.
 
 use axis_sim::Axis;
-use compensator::FrictionFeedforward;
+use compensator::{FeedforwardDrive, FrictionFeedforward};
 use lugre::LuGre;
 
 use crate::PipelineError;
@@ -32,6 +32,13 @@ impl Feedforward {
     /// [`PipelineError::Compensator`] for values outside their ranges.
     pub fn of_law(&self, law: LuGre, period: f64) -> Result<FrictionFeedforward, PipelineError> {
         let Self { lever, per_effort } = *self;
-        Ok(FrictionFeedforward::new(law, lever, per_effort, period)?)
+        Ok(FrictionFeedforward::new(
+            law,
+            FeedforwardDrive {
+                travel_per_radian: lever,
+                torque_constant: per_effort,
+                period,
+            },
+        )?)
     }
 }

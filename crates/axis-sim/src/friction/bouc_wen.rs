@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use lugre::BoucWenOnset;
 
-use super::Friction;
 use super::contact::of_bristle;
-use super::keys::{linear, rotary};
+use super::keys::{STRIBECK_EXPONENT, linear, rotary};
 use super::lugre_at_motor::{BREAK_AWAY, COULOMB_LEVEL};
+use super::{Friction, FrictionPlace};
 use crate::freedom::Freedom;
 use crate::part::{Known, PartError, PartKind, Values, number};
 
@@ -20,6 +20,11 @@ pub(super) static LINEAR: PartKind<Friction> = PartKind {
         linear::STRIBECK_SPEED,
         linear::STIFFNESS_OF_BRISTLE,
         linear::VISCOUS,
+        linear::COULOMB_BACKWARD,
+        linear::STICTION_BACKWARD,
+        STRIBECK_EXPONENT,
+        linear::VISCOUS_QUADRATIC,
+        linear::VISCOUS_CUBIC,
         number("exponent", 1.0, 16.0),
         number("loading_share", 0.5, 10.0),
     ],
@@ -36,6 +41,11 @@ pub(super) static ROTARY: PartKind<Friction> = PartKind {
         rotary::STRIBECK_SPEED,
         rotary::STIFFNESS_OF_BRISTLE,
         rotary::VISCOUS,
+        rotary::COULOMB_BACKWARD,
+        rotary::STICTION_BACKWARD,
+        STRIBECK_EXPONENT,
+        rotary::VISCOUS_QUADRATIC,
+        rotary::VISCOUS_CUBIC,
         number("exponent", 1.0, 16.0),
         number("loading_share", 0.5, 10.0),
     ],
@@ -56,5 +66,5 @@ fn build(v: &Values, freedom: Freedom) -> Result<Arc<Friction>, PartError> {
         exponent: v.number("exponent")?,
         loading_share: v.number("loading_share")?,
     };
-    of_bristle(v, freedom, onset)
+    of_bristle(v, FrictionPlace::Load(freedom), onset)
 }

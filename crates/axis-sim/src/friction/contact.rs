@@ -5,12 +5,11 @@ use std::sync::Arc;
 
 use lugre::{
     Bristle, BristleParameters, FrictionError, FrictionLaw, MaxwellSlip, MaxwellState, Onset,
-    Parameters,
+    Parameters, SteadyState,
 };
 
 use super::keys::steady;
 use super::{Friction, FrictionPlace};
-use crate::freedom::Freedom;
 use crate::part::{PartError, Values};
 
 /// How many elements a Maxwell-slip friction has.
@@ -43,8 +42,16 @@ trait Remembers: FrictionLaw<f64> {
     /// At standstill, its springs under that force.
     fn held(&self, force: f64) -> Self::State;
 
-    /// The Coulomb level.
-    fn level(&self) -> f64;
+    /// The Coulomb level against a force of the springs of that sign.
+    fn level(&self, force: f64) -> f64;
+}
+
+/// The Coulomb level of the direction in which a motion has a force of that sign.
+fn level_of(curve: &SteadyState, force: f64) -> f64 {
+    match force < 0.0 {
+        true => curve.backward.coulomb,
+        false => curve.forward.coulomb,
+    }
 }
 
 impl<O: Onset<f64>> Remembers for Bristle<f64, O> {
@@ -62,8 +69,8 @@ impl<O: Onset<f64>> Remembers for Bristle<f64, O> {
         force / self.stiffness()
     }
 
-    fn level(&self) -> f64 {
-        self.parameters().steady.forward.coulomb
+    fn level(&self, force: f64) -> f64 {
+        level_of(&self.parameters().steady, force)
     }
 }
 
@@ -89,15 +96,15 @@ impl Remembers for MaxwellSlip<f64, ELEMENTS> {
         }
     }
 
-    fn level(&self) -> f64 {
-        self.parameters().steady.forward.coulomb
+    fn level(&self, force: f64) -> f64 {
+        level_of(&self.parameters().steady, force)
     }
 }
 
 impl<L: Remembers + Debug + Send + Sync> Contact for L {
     fn settled(&self, speed: f64, share: f64) -> ContactState {
         L::kept(&match speed == 0.0 {
-            true => self.held(share * self.level()),
+            true => self.held(share * self.level(share)),
             false => FrictionLaw::settled(self, speed),
         })
     }
@@ -112,14 +119,15 @@ impl<L: Remembers + Debug + Send + Sync> Contact for L {
     }
 
     fn share(&self, state: &ContactState) -> f64 {
-        self.spring_force(&L::recalled(state)) / self.level()
+        let force = self.spring_force(&L::recalled(state));
+        force / self.level(force)
     }
 }
 
 /// Friction of one bristle with that onset.
 pub(super) fn of_bristle<O: Onset<f64> + Debug + Send + Sync + 'static>(
     v: &Values,
-    freedom: Freedom,
+    at: FrictionPlace,
     onset: O,
 ) -> Result<Arc<Friction>, PartError> {
     let stiffness = v.number("bristle_stiffness")?;
@@ -130,13 +138,14 @@ pub(super) fn of_bristle<O: Onset<f64> + Debug + Send + Sync + 'static>(
         damping,
         onset,
     });
-    with_contact(v, freedom, [stiffness, damping], law)
+    with_contact(v, at, [stiffness, damping], law)
 }
 
-/// Friction with that law, and the LuGre law beside it.
+/// Friction with that law, and the LuGre law beside it, which has the mean of the levels of both
+/// directions.
 pub(super) fn with_contact(
     v: &Values,
-    freedom: Freedom,
+    at: FrictionPlace,
     [stiffness, damping]: [f64; 2],
     law: Result<impl Contact + 'static, FrictionError>,
 ) -> Result<Arc<Friction>, PartError> {
@@ -144,15 +153,14 @@ pub(super) fn with_contact(
         law.map_err(|e| PartError::together(e, "the other parameters smaller or larger"))?;
     let curve = steady(v)?;
     let parameters = Parameters {
-        coulomb: curve.forward.coulomb,
-        stiction: curve.forward.stiction,
+        coulomb: 0.5 * (curve.forward.coulomb + curve.backward.coulomb),
+        stiction: 0.5 * (curve.forward.stiction + curve.backward.stiction),
         stribeck_speed: curve.stribeck_speed,
         stiffness,
         damping,
         viscous: curve.viscous,
     };
-    let place = FrictionPlace::Load(freedom);
-    let mut friction = Friction::new(parameters, stiffness / parameters.coulomb, place)?;
+    let mut friction = Friction::new(parameters, stiffness / parameters.coulomb, at)?;
     friction.contact = Some(Arc::new(contact));
     Ok(Arc::new(friction))
 }
@@ -174,6 +182,83 @@ mod tests {
             values.set(key, *to);
         }
         Part::new(named(FRICTIONS, kind).unwrap(), values).unwrap()
+    }
+
+    /// Each key of the curve in each kind that takes it, in both directions of settled motion, against
+    /// the curve written out; the levels of a direction hold at standstill too.
+    #[test]
+    fn every_kind_takes_every_key_of_the_curve() {
+        let bristle = [("bristle_stiffness", 2e6), ("bristle_damping", 1e3)];
+        let more = [
+            ("elastic_share", 0.9),
+            ("exponent", 1.5),
+            ("loading_share", 0.5),
+            ("presliding", 1e-5),
+            ("lag", 1e-3),
+        ];
+        let keys = [
+            ("coulomb_backward", 70.0),
+            ("stiction_backward", 99.0),
+            ("stribeck_exponent", 0.8),
+            ("viscous_quadratic", 5e3),
+            ("viscous_cubic", 4e5),
+        ];
+        let kinds = FRICTIONS.iter().map(|kind| kind.name);
+        for kind in kinds.filter(|kind| !kind.starts_with("coulomb")) {
+            for (key, to) in keys {
+                let takes = named(FRICTIONS, kind).unwrap().keys;
+                let mut numbers = [&bristle[..], &more, &[(key, to)]].concat();
+                numbers.retain(|(key, _)| takes.iter().any(|k| k.name() == *key));
+                assert!(numbers.contains(&(key, to)), "{kind} does not take {key}");
+                let friction = friction(kind, &numbers);
+                let contact = friction.contact.as_ref().unwrap();
+                let of = |name, otherwise| if name == key { to } else { otherwise };
+                for v in [0.02, -0.02, 3e-3, -3e-3_f64] {
+                    let [coulomb, stiction] = match v < 0.0 {
+                        true => [of("coulomb_backward", 60.0), of("stiction_backward", 85.0)],
+                        false => [60.0, 85.0],
+                    };
+                    let fall = (v.abs() / 4e-3).powf(of("stribeck_exponent", 2.0));
+                    let dry = coulomb + (stiction - coulomb) * (-fall).exp();
+                    let viscous = 300.0 * v
+                        + of("viscous_quadratic", 0.0) * v * v.abs()
+                        + of("viscous_cubic", 0.0) * v * v * v;
+                    let expected = dry.copysign(v) + viscous;
+                    let force = contact.force(&contact.settled(v, 0.0), v);
+                    assert!(
+                        (force - expected).abs() < 1e-9,
+                        "{kind} {key}: {force} {expected}"
+                    );
+                    let held = contact.force(&contact.settled(0.0, v.signum()), 0.0);
+                    assert!(
+                        (held - coulomb.copysign(v)).abs() < 1e-9,
+                        "{kind} {key}: {held}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_break_away_below_its_level_is_refused() {
+        let mut values = Values::default();
+        for (key, to) in [
+            ("coulomb", 60.0),
+            ("stiction", 85.0),
+            ("coulomb_backward", 90.0),
+            ("stribeck_speed", 4e-3),
+            ("bristle_stiffness", 2e6),
+            ("bristle_damping", 0.0),
+            ("viscous", 300.0),
+        ] {
+            values.set(key, to);
+        }
+        let refused = Part::new(named(FRICTIONS, "lugre").unwrap(), values).unwrap_err();
+        let message = format!("{refused:?}");
+        assert!(
+            message.contains("at least as great as coulomb_backward"),
+            "{message}"
+        );
     }
 
     /// At standstill the share of the Coulomb level that holds, and in motion the Stribeck curve.

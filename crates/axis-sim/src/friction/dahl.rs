@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use lugre::DahlOnset;
 
-use super::Friction;
 use super::contact::of_bristle;
-use super::keys::{linear, rotary};
+use super::keys::{STRIBECK_EXPONENT, linear, rotary};
 use super::lugre_at_motor::{BREAK_AWAY, COULOMB_LEVEL};
+use super::{Friction, FrictionPlace};
 use crate::freedom::Freedom;
 use crate::part::{Known, PartError, PartKind, Values, number};
 
@@ -20,6 +20,11 @@ pub(super) static LINEAR: PartKind<Friction> = PartKind {
         linear::STRIBECK_SPEED,
         linear::STIFFNESS_OF_BRISTLE,
         linear::VISCOUS,
+        linear::COULOMB_BACKWARD,
+        linear::STICTION_BACKWARD,
+        STRIBECK_EXPONENT,
+        linear::VISCOUS_QUADRATIC,
+        linear::VISCOUS_CUBIC,
         number("exponent", 0.0, 10.0),
     ],
     known: KNOWN,
@@ -35,6 +40,11 @@ pub(super) static ROTARY: PartKind<Friction> = PartKind {
         rotary::STRIBECK_SPEED,
         rotary::STIFFNESS_OF_BRISTLE,
         rotary::VISCOUS,
+        rotary::COULOMB_BACKWARD,
+        rotary::STICTION_BACKWARD,
+        STRIBECK_EXPONENT,
+        rotary::VISCOUS_QUADRATIC,
+        rotary::VISCOUS_CUBIC,
         number("exponent", 0.0, 10.0),
     ],
     known: KNOWN,
@@ -53,5 +63,5 @@ fn build(v: &Values, freedom: Freedom) -> Result<Arc<Friction>, PartError> {
     let onset = DahlOnset {
         exponent: v.number("exponent")?,
     };
-    of_bristle(v, freedom, onset)
+    of_bristle(v, FrictionPlace::Load(freedom), onset)
 }

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use lugre::ElastoPlasticOnset;
 
-use super::Friction;
 use super::contact::of_bristle;
-use super::keys::{linear, rotary};
+use super::keys::{STRIBECK_EXPONENT, linear, rotary};
 use super::lugre_at_motor::{BREAK_AWAY, COULOMB_LEVEL};
+use super::{Friction, FrictionPlace};
 use crate::freedom::Freedom;
 use crate::part::{Known, PartError, PartKind, Values, number};
 
@@ -21,6 +21,11 @@ pub(super) static LINEAR: PartKind<Friction> = PartKind {
         linear::STIFFNESS_OF_BRISTLE,
         linear::DAMPING,
         linear::VISCOUS,
+        linear::COULOMB_BACKWARD,
+        linear::STICTION_BACKWARD,
+        STRIBECK_EXPONENT,
+        linear::VISCOUS_QUADRATIC,
+        linear::VISCOUS_CUBIC,
         number("elastic_share", 0.0, 0.99),
     ],
     known: KNOWN,
@@ -37,6 +42,11 @@ pub(super) static ROTARY: PartKind<Friction> = PartKind {
         rotary::STIFFNESS_OF_BRISTLE,
         rotary::DAMPING,
         rotary::VISCOUS,
+        rotary::COULOMB_BACKWARD,
+        rotary::STICTION_BACKWARD,
+        STRIBECK_EXPONENT,
+        rotary::VISCOUS_QUADRATIC,
+        rotary::VISCOUS_CUBIC,
         number("elastic_share", 0.0, 0.99),
     ],
     known: KNOWN,
@@ -56,5 +66,5 @@ fn build(v: &Values, freedom: Freedom) -> Result<Arc<Friction>, PartError> {
     let onset = ElastoPlasticOnset {
         elastic_share: v.number("elastic_share")?,
     };
-    of_bristle(v, freedom, onset)
+    of_bristle(v, FrictionPlace::Load(freedom), onset)
 }

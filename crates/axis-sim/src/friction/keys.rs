@@ -3,9 +3,22 @@
 use lugre::{FrictionLevel, SteadyState};
 
 use crate::part::units::{
-    ANGULAR_SPEED, FORCE, LINEAR_DAMPING, ROTARY_DAMPING, SPEED, STIFFNESS, TORQUE, TORSION,
+    ANGULAR_SPEED, CUBIC_DAMPING, FORCE, LINEAR_DAMPING, QUADRATIC_DAMPING, ROTARY_CUBIC_DAMPING,
+    ROTARY_DAMPING, ROTARY_QUADRATIC_DAMPING, SPEED, STIFFNESS, TORQUE, TORSION,
 };
-use crate::part::{Key, PartError, Role, Values, quantity};
+use crate::part::{Key, PartError, Role, Values, number, quantity};
+
+/// δ of the Stribeck curve.
+pub(super) const STRIBECK_EXPONENT: Key = number("stribeck_exponent", 0.1, 10.0).or(2.0);
+
+/// Keys of a curve that the law LuGre by itself has not.
+const BEYOND_LUGRE: [&str; 5] = [
+    "coulomb_backward",
+    "stiction_backward",
+    "stribeck_exponent",
+    "viscous_quadratic",
+    "viscous_cubic",
+];
 
 pub(super) mod linear {
     use super::*;
@@ -18,6 +31,14 @@ pub(super) mod linear {
     pub(in super::super) const DAMPING: Key =
         quantity("bristle_damping", &LINEAR_DAMPING, 0.0, 1e12);
     pub(in super::super) const VISCOUS: Key = quantity("viscous", &LINEAR_DAMPING, 0.0, 1e9);
+    pub(in super::super) const COULOMB_BACKWARD: Key =
+        quantity("coulomb_backward", &FORCE, 1e-9, 1e7).optional();
+    pub(in super::super) const STICTION_BACKWARD: Key =
+        quantity("stiction_backward", &FORCE, 1e-9, 1e7).optional();
+    pub(in super::super) const VISCOUS_QUADRATIC: Key =
+        quantity("viscous_quadratic", &QUADRATIC_DAMPING, 0.0, 1e9).or(0.0);
+    pub(in super::super) const VISCOUS_CUBIC: Key =
+        quantity("viscous_cubic", &CUBIC_DAMPING, 0.0, 1e9).or(0.0);
 }
 
 pub(super) mod rotary {
@@ -32,19 +53,45 @@ pub(super) mod rotary {
     pub(in super::super) const DAMPING: Key =
         quantity("bristle_damping", &ROTARY_DAMPING, 0.0, 1e12);
     pub(in super::super) const VISCOUS: Key = quantity("viscous", &ROTARY_DAMPING, 0.0, 1e9);
+    pub(in super::super) const COULOMB_BACKWARD: Key =
+        quantity("coulomb_backward", &TORQUE, 1e-9, 1e7).optional();
+    pub(in super::super) const STICTION_BACKWARD: Key =
+        quantity("stiction_backward", &TORQUE, 1e-9, 1e7).optional();
+    pub(in super::super) const VISCOUS_QUADRATIC: Key =
+        quantity("viscous_quadratic", &ROTARY_QUADRATIC_DAMPING, 0.0, 1e9).or(0.0);
+    pub(in super::super) const VISCOUS_CUBIC: Key =
+        quantity("viscous_cubic", &ROTARY_CUBIC_DAMPING, 0.0, 1e9).or(0.0);
 }
 
 /// The curve over speed that all of them have.
 pub(super) fn steady(v: &Values) -> Result<SteadyState, PartError> {
-    let level = FrictionLevel {
+    let forward = FrictionLevel {
         coulomb: v.number("coulomb")?,
         stiction: v.number("stiction")?,
     };
+    let backward = FrictionLevel {
+        coulomb: v.or("coulomb_backward", forward.coulomb),
+        stiction: v.or("stiction_backward", forward.stiction),
+    };
+    let has_own = backward != forward;
+    if has_own && backward.stiction < backward.coulomb {
+        return Err(PartError::together(
+            "stiction_backward (stiction, if it is left out) is below coulomb_backward (coulomb)",
+            "stiction_backward at least as great as coulomb_backward",
+        ));
+    }
     Ok(SteadyState {
-        forward: level,
-        backward: level,
+        forward,
+        backward,
         stribeck_speed: v.number("stribeck_speed")?,
+        stribeck_exponent: v.or("stribeck_exponent", 2.0),
         viscous: v.number("viscous")?,
-        ..SteadyState::coulomb(level.coulomb)
+        viscous_quadratic: v.or("viscous_quadratic", 0.0),
+        viscous_cubic: v.or("viscous_cubic", 0.0),
     })
+}
+
+/// Whether the curve has what LuGre by itself has not.
+pub(super) fn is_beyond_lugre(v: &Values) -> bool {
+    BEYOND_LUGRE.iter().any(|key| v.optional(key).is_some())
 }

@@ -1,5 +1,6 @@
 //! `lugre` and `lugre-rotary`: LuGre friction in the load's own units.
 
+use super::keys::{STRIBECK_EXPONENT, linear, rotary};
 use super::lugre_at_motor::{KNOWN, build};
 use super::{Friction, FrictionPlace};
 use crate::freedom::Freedom;
@@ -18,6 +19,11 @@ pub(super) static LINEAR: PartKind<Friction> = PartKind {
         quantity("bristle_stiffness", &STIFFNESS, 1e-3, 1e15).role(Role::BristleStiffness),
         quantity("bristle_damping", &LINEAR_DAMPING, 0.0, 1e12),
         quantity("viscous", &LINEAR_DAMPING, 0.0, 1e9),
+        linear::COULOMB_BACKWARD,
+        linear::STICTION_BACKWARD,
+        STRIBECK_EXPONENT,
+        linear::VISCOUS_QUADRATIC,
+        linear::VISCOUS_CUBIC,
     ],
     known: KNOWN,
     build: |v| build(v, FrictionPlace::Load(Freedom::Linear)),
@@ -33,6 +39,11 @@ pub(super) static ROTARY: PartKind<Friction> = PartKind {
         quantity("bristle_stiffness", &TORSION, 1e-6, 1e15).role(Role::BristleStiffness),
         quantity("bristle_damping", &ROTARY_DAMPING, 0.0, 1e12),
         quantity("viscous", &ROTARY_DAMPING, 0.0, 1e9),
+        rotary::COULOMB_BACKWARD,
+        rotary::STICTION_BACKWARD,
+        STRIBECK_EXPONENT,
+        rotary::VISCOUS_QUADRATIC,
+        rotary::VISCOUS_CUBIC,
     ],
     known: KNOWN,
     build: |v| build(v, FrictionPlace::Load(Freedom::Rotary)),

@@ -3,8 +3,10 @@
 
 use std::sync::Arc;
 
-use lugre::Parameters;
+use lugre::{LinearOnset, Parameters};
 
+use super::contact::of_bristle;
+use super::keys::{STRIBECK_EXPONENT, is_beyond_lugre, rotary};
 use super::{Friction, FrictionPlace};
 use crate::part::units::{BRISTLE_STIFFNESS, ROTARY_DAMPING, ROTATION, TORQUE};
 use crate::part::{Known, PartError, PartKind, Role, Values, quantity};
@@ -19,6 +21,11 @@ pub(super) static KIND: PartKind<Friction> = PartKind {
         quantity("bristle_stiffness", &BRISTLE_STIFFNESS, 1e-6, 1e9).role(Role::BristleStiffness),
         quantity("bristle_damping", &ROTARY_DAMPING, 0.0, 1e5),
         quantity("viscous", &ROTARY_DAMPING, 0.0, 1e5),
+        quantity("coulomb_backward", &TORQUE, 1e-9, 1e5).optional(),
+        quantity("stiction_backward", &TORQUE, 1e-9, 1e5).optional(),
+        STRIBECK_EXPONENT,
+        rotary::VISCOUS_QUADRATIC,
+        rotary::VISCOUS_CUBIC,
     ],
     known: KNOWN,
     build: |v| build(v, FrictionPlace::Motor),
@@ -28,12 +35,23 @@ pub(super) static KIND: PartKind<Friction> = PartKind {
 /// Coulomb level.
 pub(super) const COULOMB_LEVEL: Known = Known::by("coulomb_level", |v, by| {
     v.scale("coulomb", by);
-    v.set("stiction", v.or("stiction", 0.0).max(v.or("coulomb", 0.0)));
+    v.scale("coulomb_backward", by);
+    keep_break_away_above(v, 1.0);
 });
 pub(super) const BREAK_AWAY: Known = Known::by("break_away", |v, by| {
-    let stiction = by * v.or("stiction", 0.0);
-    v.set("stiction", stiction.max(v.or("coulomb", 0.0)));
+    keep_break_away_above(v, by);
 });
+
+/// The break-away levels times a factor, but at least the Coulomb level of their direction.
+fn keep_break_away_above(v: &mut Values, by: f64) {
+    let (coulomb, stiction) = (v.or("coulomb", 0.0), v.or("stiction", 0.0));
+    let backward = v.or("coulomb_backward", coulomb);
+    if v.optional("stiction_backward").is_some() || backward > coulomb {
+        let own = v.or("stiction_backward", stiction);
+        v.set("stiction_backward", (by * own).max(backward));
+    }
+    v.set("stiction", (by * stiction).max(coulomb));
+}
 
 /// The known parameters of every LuGre friction.
 pub(super) const KNOWN: &[Known] = &[
@@ -46,6 +64,9 @@ pub(super) const KNOWN: &[Known] = &[
 ];
 
 pub(super) fn build(v: &Values, at: FrictionPlace) -> Result<Arc<Friction>, PartError> {
+    if is_beyond_lugre(v) {
+        return of_bristle(v, at, LinearOnset {});
+    }
     let parameters = Parameters {
         coulomb: v.number("coulomb")?,
         stiction: v.number("stiction")?,

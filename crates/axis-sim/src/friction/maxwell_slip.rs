@@ -7,10 +7,10 @@ use std::sync::Arc;
 
 use lugre::{MaxwellSlip, MaxwellSlipParameters};
 
-use super::Friction;
 use super::contact::{ELEMENTS, with_contact};
-use super::keys::{linear, rotary, steady};
+use super::keys::{STRIBECK_EXPONENT, linear, rotary, steady};
 use super::lugre_at_motor::{BREAK_AWAY, COULOMB_LEVEL};
+use super::{Friction, FrictionPlace};
 use crate::freedom::Freedom;
 use crate::part::units::{ANGLE, LENGTH, TIME};
 use crate::part::{Known, PartError, PartKind, Values, quantity};
@@ -26,6 +26,11 @@ pub(super) static LINEAR: PartKind<Friction> = PartKind {
         linear::STICTION,
         linear::STRIBECK_SPEED,
         linear::VISCOUS,
+        linear::COULOMB_BACKWARD,
+        linear::STICTION_BACKWARD,
+        STRIBECK_EXPONENT,
+        linear::VISCOUS_QUADRATIC,
+        linear::VISCOUS_CUBIC,
         quantity("presliding", &LENGTH, 1e-9, 0.1),
         quantity("lag", &TIME, 1e-9, 1e3),
     ],
@@ -41,6 +46,11 @@ pub(super) static ROTARY: PartKind<Friction> = PartKind {
         rotary::STICTION,
         rotary::STRIBECK_SPEED,
         rotary::VISCOUS,
+        rotary::COULOMB_BACKWARD,
+        rotary::STICTION_BACKWARD,
+        STRIBECK_EXPONENT,
+        rotary::VISCOUS_QUADRATIC,
+        rotary::VISCOUS_CUBIC,
         quantity("presliding", &ANGLE, 1e-9, 0.1),
         quantity("lag", &TIME, 1e-9, 1e3),
     ],
@@ -71,5 +81,5 @@ fn build(v: &Values, freedom: Freedom) -> Result<Arc<Friction>, PartError> {
         attraction: coulomb / v.number("lag")?,
     });
     let whole = stiffness.iter().sum();
-    with_contact(v, freedom, [whole, 0.0], law)
+    with_contact(v, FrictionPlace::Load(freedom), [whole, 0.0], law)
 }

@@ -165,7 +165,7 @@ impl Mechanism for BallScrew {
         let modes = self.drive.modes(x, NutCoupling::ShapeFunctions)?;
         let load = modes.shapes.nrows() - 1;
         let beta = self.stiffness_damping();
-        let elastic = modes.frequencies.iter().enumerate().skip(1);
+        let elastic = modes.frequencies_rad_s.iter().enumerate().skip(1);
         let elastic = elastic.map(|(i, &frequency)| Mode {
             frequency,
             damping: beta * frequency * frequency,
@@ -200,7 +200,7 @@ impl Mechanism for BallScrew {
 
     fn modes(&self, x: f64) -> Result<Vec<f64>, DriveError> {
         let modes = self.drive.modes(x, NutCoupling::ShapeFunctions)?;
-        Ok(modes.frequencies.into_iter().skip(1).collect())
+        Ok(modes.frequencies_rad_s.into_iter().skip(1).collect())
     }
 
     /// The paper's moving node on Newmark's rule, whose periods are longer by (ωh)²/12: at

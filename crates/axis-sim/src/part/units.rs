@@ -78,6 +78,10 @@ dimensions! {
     FORCE_CONSTANT "unit of a force constant": "n_per_a" 1.0;
     FORCE "unit of force": "n" 1.0, "kn" 1e3;
     LINEAR_DAMPING "unit of damping": "n_s_per_m" 1.0;
+    QUADRATIC_DAMPING "unit of quadratic damping": "n_s2_per_m2" 1.0;
+    CUBIC_DAMPING "unit of cubic damping": "n_s3_per_m3" 1.0;
+    ROTARY_QUADRATIC_DAMPING "unit of rotary quadratic damping": "n_m_s2_per_rad2" 1.0, "n_m_per_rpm2" 1.0 / (RPM * RPM);
+    ROTARY_CUBIC_DAMPING "unit of rotary cubic damping": "n_m_s3_per_rad3" 1.0, "n_m_per_rpm3" 1.0 / (RPM * RPM * RPM);
     FORCE_GAIN "unit of a force gain": "n_per_v" 1.0;
     SPEED_GAIN "unit of a speed gain": "v_s_per_m" 1.0, "n_s_per_m" 1.0, "n_m_s_per_m" 1.0, "n_m_s_per_rad" 1.0, "a_s_per_m" 1.0, "a_s_per_rad" 1.0;
     PID_PROPORTIONAL "unit of a PID controller's proportional gain":

@@ -5,7 +5,7 @@ use axis_sim::Axis;
 use axis_sim::friction::FRICTIONS;
 use axis_sim::part::{Part, Values, named};
 
-use crate::rigid::{FRICTION, apart, controlled, level, machine, runge_kutta};
+use crate::rigid::{FRICTION, apart, controlled, level, machine, runge_kutta, runge_kutta_with};
 
 const MASS: f64 = 95.0;
 
@@ -110,4 +110,60 @@ fn maxwell_slip() {
         [x + h * v, v]
     });
     close(&axis, &truth);
+}
+
+/// LuGre with one key of the curve more, against LuGre's equations with that curve.
+fn compare_curve(
+    numbers: &[(&'static str, f64)],
+    curve: impl Fn(f64) -> f64,
+    viscous: impl Fn(f64) -> f64,
+) {
+    let bristle = [
+        ("bristle_stiffness", FRICTION.stiffness),
+        ("bristle_damping", FRICTION.damping),
+    ];
+    let mut axis = with("lugre", &[&bristle, numbers].concat());
+    axis.simulation.step = 5e-6;
+    let slip = |v: f64, z: f64| v - FRICTION.stiffness * v.abs() * z / curve(v);
+    let advance = runge_kutta_with(MASS, FRICTION.damping, slip, viscous);
+    close(&axis, &controlled(&axis, 1e-6, advance));
+}
+
+fn linear(v: f64) -> f64 {
+    FRICTION.viscous * v
+}
+
+/// Levels from the Coulomb level `coulomb` to `stiction`, with that exponent.
+fn stribeck(v: f64, coulomb: f64, stiction: f64, exponent: f64) -> f64 {
+    coulomb + (stiction - coulomb) * (-(v.abs() / FRICTION.stribeck_speed).powf(exponent)).exp()
+}
+
+#[test]
+fn coulomb_level_backward() {
+    let curve = |v: f64| stribeck(v, if v < 0.0 { 23.0 } else { 20.0 }, 25.0, 2.0);
+    compare_curve(&[("coulomb_backward", 23.0)], curve, linear);
+}
+
+#[test]
+fn break_away_backward() {
+    let curve = |v: f64| stribeck(v, 20.0, if v < 0.0 { 32.0 } else { 25.0 }, 2.0);
+    compare_curve(&[("stiction_backward", 32.0)], curve, linear);
+}
+
+#[test]
+fn stribeck_exponent() {
+    let curve = |v: f64| stribeck(v, 20.0, 25.0, 0.7);
+    compare_curve(&[("stribeck_exponent", 0.7)], curve, linear);
+}
+
+#[test]
+fn viscous_of_second_order() {
+    let viscous = |v: f64| linear(v) + 400.0 * v * v.abs();
+    compare_curve(&[("viscous_quadratic", 400.0)], level, viscous);
+}
+
+#[test]
+fn viscous_of_third_order() {
+    let viscous = |v: f64| linear(v) + 4000.0 * v.powi(3);
+    compare_curve(&[("viscous_cubic", 4000.0)], level, viscous);
 }

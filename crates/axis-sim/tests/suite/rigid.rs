@@ -101,12 +101,22 @@ pub fn runge_kutta(
     damping: f64,
     slip: impl Fn(f64, f64) -> f64,
 ) -> impl FnMut([f64; 2], f64, f64) -> [f64; 2] {
+    runge_kutta_with(mass, damping, slip, |v| FRICTION.viscous * v)
+}
+
+/// The same with another viscous part.
+pub fn runge_kutta_with(
+    mass: f64,
+    damping: f64,
+    slip: impl Fn(f64, f64) -> f64,
+    viscous: impl Fn(f64) -> f64,
+) -> impl FnMut([f64; 2], f64, f64) -> [f64; 2] {
     let p = FRICTION;
     let mut deflection = 0.0;
     move |[x, v], force, h| {
         let rate = |[_, v, z]: [f64; 3]| {
             let slip = slip(v, z);
-            let rub = p.stiffness * z + damping * slip + p.viscous * v;
+            let rub = p.stiffness * z + damping * slip + viscous(v);
             [v, (force - rub) / mass, slip]
         };
         let moved = |s: [f64; 3], r: [f64; 3], h: f64| [0, 1, 2].map(|i| s[i] + h * r[i]);

@@ -10,6 +10,11 @@ pub(super) type Theta = [f64; COUNT];
 
 /// A parameter that is adapted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum AdaptParameter {
     /// Coulomb level and break-away together.
     FrictionLevel,
@@ -73,6 +78,8 @@ impl AdaptParameter {
 
 /// What is held possible of one parameter before anything is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct PriorSpread {
     /// Standard deviation of its relative error; 0 holds it fixed. Larger errors are
     /// accepted if the data insist: beyond two deviations the prior gives way.

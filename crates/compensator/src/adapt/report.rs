@@ -6,6 +6,8 @@ use super::AdaptParameter;
 
 /// One parameter as it is known after a move.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Estimated {
     /// Which.
     pub parameter: AdaptParameter,
@@ -26,6 +28,8 @@ pub struct Estimated {
 
 /// What a move has taught.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Learned {
     /// Moves learned by now, this one included.
     pub moves: usize,

@@ -15,6 +15,8 @@ use crate::model::DriveModel;
 ///        = T_after + a (T_after − T_before)/T_C e^(−(t − delay)/decay)
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ReversalPulse<T = f64> {
     /// Time from the change of direction to the pulse, s.
     pub delay: T,

@@ -28,6 +28,8 @@ pub use gauss::Gauss;
 
 /// How a move is learned.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct LearningSettings {
     /// Deviation σ of the Gaussian, s.
     pub smoothing: f64,
@@ -49,6 +51,8 @@ impl Default for LearningSettings {
 
 /// What a round of learning came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Round {
     /// Rounds so far, this one included.
     pub rounds: u32,
@@ -65,6 +69,11 @@ pub struct Round {
 
 /// What to do after a round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum Advice {
     /// Make the move again: more can be learned.
     Again,

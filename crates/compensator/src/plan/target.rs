@@ -6,6 +6,8 @@ use crate::{Correction, Reference};
 
 /// How a plan is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct PlanSettings<T = f64> {
     /// Deviation of the Gaussian over the wind-up, s. 2 ms by default; it costs four
     /// times itself of look-ahead. 0: none, with two set points ahead.

@@ -1,9 +1,9 @@
 //! A drive of two inertias, motor and load, on an elastic transmission.
 
-mod ahead;
-mod course;
+mod average_acceleration;
 mod prepared;
 mod response;
+mod step_end;
 mod stepper;
 mod stiffness;
 mod transmission;

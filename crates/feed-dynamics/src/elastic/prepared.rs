@@ -1,7 +1,7 @@
 //! An elastic drive, prepared for steps of one length.
 
 use super::ElasticDrive;
-use super::course::Course;
+use super::average_acceleration::Course;
 use super::transmission::Transmission;
 use crate::stepper::check_step;
 use crate::{DriveError, NutErrors};

@@ -8,6 +8,11 @@ use crate::error::frequency;
 
 /// Where an elastic drive is driven or observed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum Side {
     /// Rotation of the motor (rad), driven by a torque (N·m).
     Motor,

@@ -16,9 +16,9 @@
 //! The coordinates are the load's displacement y and the compression δ = rθ − y,
 //! not θ: the force k δ then keeps its digits however far the axis travels.
 
-use super::ahead::Ahead;
-use super::course::Course;
+use super::average_acceleration::Course;
 use super::prepared::{ElasticState, ElasticStepper};
+use super::step_end::Ahead;
 use super::transmission::Share;
 use crate::stepper::find_load_within;
 use crate::{

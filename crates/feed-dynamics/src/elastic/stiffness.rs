@@ -63,10 +63,18 @@ impl Stiffness for InSeries {
 /// is not used up. Source: Hace, Jezernik, Šabanović, Proc. IEEE ISIE 2005, 1641–1646
 /// (its third strand, between the pulleys, is part of L₂ here).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        try_from = "crate::stored::StoredStrands",
+        into = "crate::stored::StoredStrands"
+    )
+)]
 pub struct BeltStrands {
-    specific_stiffness: f64,
-    shortest: f64,
-    total: f64,
+    pub(crate) specific_stiffness: f64,
+    pub(crate) shortest: f64,
+    pub(crate) total: f64,
 }
 
 impl BeltStrands {

@@ -24,6 +24,8 @@ use crate::{DriveError, FeedDrive};
 /// The motion of the load (the table of a ball screw) at the end of a step, as far
 /// as it is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct TableMotion {
     /// Displacement from where the simulation began, m.
     pub displacement: f64,
@@ -33,6 +35,8 @@ pub struct TableMotion {
 
 /// What can be seen of a drive's state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Observation {
     /// Motor angle, rad, from where the simulation began.
     pub motor_angle: f64,
@@ -48,6 +52,8 @@ pub struct Observation {
 
 /// Uniformly accelerated motion in which every deflection has settled.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Settled {
     /// Speed of the load (the table of a ball screw), m/s.
     pub speed: f64,
@@ -90,6 +96,11 @@ pub struct StepReport {
 /// ball screw, may depend on its motion at the end of the step;
 /// it is searched for ([`find_load`]), so `load` is called a few times with
 /// better and better motions, the last of which counts.
+///
+/// It is not object-safe: each stepper has a state of its own that `step` changes in place without
+/// allocating, and a step calls the load several times, inlined. For one type over several kinds of
+/// drive, put the stepper and its state into a struct of yours behind a trait of yours whose `step`
+/// takes `&mut dyn FnMut(TableMotion) -> f64`; such a closure is a valid load here.
 pub trait TimeStepper {
     /// The state that a step changes.
     type State: Clone;

@@ -90,7 +90,7 @@ fn reciprocal_and_built_from_the_modes() {
         assert!((f - g).norm() < 1e-11 * f.norm().max(1e-9));
         let sum: nalgebra::Complex<f64> = (0..drive.coordinates())
             .map(|i| {
-                let square = modes.frequencies[i].powi(2);
+                let square = modes.frequencies_rad_s[i].powi(2);
                 let below = nalgebra::Complex::new(square - w * w, w * 1e-5 * square);
                 modes.shapes[(a, i)] * modes.shapes[(b, i)] / below
             })
@@ -109,7 +109,7 @@ fn peaks_stand_at_the_modes() {
     .unwrap();
     for coupling in COUPLINGS {
         let modes = drive.modes(0.6, coupling).unwrap();
-        for &w in &modes.frequencies[1..4] {
+        for &w in &modes.frequencies_rad_s[1..4] {
             // ζ is below 1e-3 there: the peak lies within 1e-6 of ω.
             let grid: Vec<f64> = (-40..=40)
                 .map(|i| w * (1.0 + 5e-4 * f64::from(i)))

@@ -1,6 +1,7 @@
 //! One test binary: matrices, modes and stiffnesses against laws and closed forms,
 //! the steppers against each other and against independent integrations.
 
+mod any_stepper;
 mod axial;
 mod bits;
 mod boundary;
@@ -20,6 +21,8 @@ mod settled;
 mod state_space;
 mod stepping;
 mod stiffness;
+#[cfg(feature = "serde")]
+mod stored;
 
 use beam_fem::{CrossSection, Material};
 use feed_dynamics::{DriveParameters, FeedDrive, NutCoupling};

@@ -27,7 +27,7 @@ fn stiff_chain_leaves_two_masses() {
     let square = p.nut_stiffness * (1.0 / p.table_mass + r * r / drive.rotating_inertia());
     for coupling in COUPLINGS {
         for x in [0.05, 0.33, 0.68, 1.13, 1.45] {
-            let first = drive.modes(x, coupling).unwrap().frequencies[1];
+            let first = drive.modes(x, coupling).unwrap().frequencies_rad_s[1];
             assert!(relative(first, square.sqrt()) < 2e-5, "{first} at {x}");
         }
     }
@@ -52,7 +52,7 @@ fn free_chain_approaches_the_rod() {
         .unwrap();
         let modes = drive.modes(0.7, NutCoupling::ShapeFunctions).unwrap();
         // Below the rod's first lie the rigid motion and the table on its soft nut.
-        modes.frequencies[2]
+        modes.frequencies_rad_s[2]
     };
     let shear = 206e9 / 2.6;
     let exact = std::f64::consts::PI / 1.5 * (shear / 7850.0_f64).sqrt();
@@ -77,11 +77,11 @@ fn shapes_are_mass_normalised() {
         let mass = modes.shapes.transpose() * &m.mass * &modes.shapes;
         // 1.3e-15 and 1.1e-15 as measured.
         assert!((mass - DMatrix::identity(n, n)).abs().max() < 1e-14);
-        let squares = DVector::from_iterator(n, modes.frequencies.iter().map(|w| w * w));
+        let squares = DVector::from_iterator(n, modes.frequencies_rad_s.iter().map(|w| w * w));
         let energy = modes.shapes.transpose() * &m.stiffness * &modes.shapes;
         let largest = squares.max();
         assert!((energy - DMatrix::from_diagonal(&squares)).abs().max() < 1e-14 * largest);
-        assert_eq!(modes.frequencies[0], 0.0);
+        assert_eq!(modes.frequencies_rad_s[0], 0.0);
     }
 }
 
@@ -107,7 +107,7 @@ fn frequencies_and_damping_are_those_of_the_first_order_system() {
         let mut most = [0.0_f64; 2];
         for (i, root) in roots.iter().enumerate() {
             let (w, zeta) = (root.norm(), -root.re / root.norm());
-            most[0] = most[0].max(relative(modes.frequencies[i + 1], w));
+            most[0] = most[0].max(relative(modes.frequencies_rad_s[i + 1], w));
             most[1] = most[1].max(relative(modes.damping_ratios[i + 1], zeta));
         }
         println!("{coupling:?}: ω and ζ off by {most:?}");
@@ -126,7 +126,7 @@ proptest! {
         let drive = drive();
         for at in [x, f64::from(boundary) * 0.15] {
             let frequencies = |x: f64| drive.modes(x.clamp(0.0, 1.5), NutCoupling::ShapeFunctions)
-                .unwrap().frequencies;
+                .unwrap().frequencies_rad_s;
             let (before, after) = (frequencies(at - 5e-7), frequencies(at + 5e-7));
             for (a, b) in before.iter().zip(&after).skip(1) {
                 prop_assert!(relative(*a, *b) < 5e-8, "{a} {b} at {at}");
@@ -138,7 +138,7 @@ proptest! {
 #[test]
 fn moving_node_jumps_only_where_the_mesh_does() {
     let drive = drive();
-    let low = |x: f64, coupling| drive.modes(x, coupling).unwrap().frequencies[1..4].to_vec();
+    let low = |x: f64, coupling| drive.modes(x, coupling).unwrap().frequencies_rad_s[1..4].to_vec();
     // Where the node is handed over, a thousandth of an element past each
     // boundary, an even mesh becomes one with a double element; the lowest
     // elastic modes feel that by their own discretisation error only.

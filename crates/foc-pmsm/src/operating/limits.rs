@@ -7,6 +7,8 @@ use axis_scalar::Scalar;
 
 /// What the drive can do in this cycle. Negative limits count as 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct OperatingLimits<T = f64> {
     /// Length I of the current, A (infinity: no limit).
     pub current: T,
@@ -17,6 +19,11 @@ pub struct OperatingLimits<T = f64> {
 
 /// What decided about the currents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum OperatingRegion {
     /// The least current that makes the torque.
     Mtpa,
@@ -37,6 +44,8 @@ pub enum OperatingRegion {
 
 /// The currents of a torque, as [`Pmsm::operating_currents`] finds them.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct OperatingCurrents<T = f64> {
     /// Current references, A.
     pub current: Dq<T>,

@@ -9,6 +9,8 @@ use axis_scalar::Scalar;
 /// validates them. The unit of a coefficient is A/(V·s) and as many times 1/(V·s) as its
 /// exponent says.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct AlgebraicSaturationParameters<T = f64> {
     /// a_d0 (greater than 0) and a_dd (0 or greater): inverse inductance of the d axis
     /// without saturation, and what its own flux adds.

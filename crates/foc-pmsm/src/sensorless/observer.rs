@@ -8,6 +8,8 @@ use axis_scalar::Scalar;
 
 /// The constants of a [`FluxObserver`]. Plain data; [`FluxObserver::new`] validates them.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct FluxObserverParameters<T = f64> {
     /// α: both poles of the angle's and the speed's estimation, 1/s, greater than 0.
     pub bandwidth: T,

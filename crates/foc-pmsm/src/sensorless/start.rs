@@ -7,6 +7,8 @@ use axis_scalar::Scalar;
 
 /// The constants of a [`CurrentStart`]. Plain data; [`CurrentStart::new`] validates them.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct CurrentStartParameters<T = f64> {
     /// Length of the current, A, greater than 0: enough for friction, load and
     /// acceleration together, with as much again to spare.

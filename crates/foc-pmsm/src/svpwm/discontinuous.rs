@@ -10,6 +10,11 @@ use axis_scalar::Scalar;
 /// Appl. 34 (1998), doi 10.1109/28.720446. A leg stands for a third of a turn, and a third
 /// of the switching is saved; most of its losses where the current is largest meanwhile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum DiscontinuousPwm {
     /// As [`DiscontinuousPwm::Dpwm1`], 30° (electrical) earlier: for a current that leads
     /// its voltage by about 30°.

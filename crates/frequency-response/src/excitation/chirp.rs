@@ -7,6 +7,11 @@ use crate::error::{ResponseError, check};
 
 /// How the frequency of a [`ChirpExcitation`] goes over time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum ChirpSweep {
     /// f = f₀ + (f₁ − f₀) t/T: the same power for each Hz.
     #[default]
@@ -17,6 +22,8 @@ pub enum ChirpSweep {
 
 /// A sine whose frequency goes once from one end to the other; it begins with 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ChirpExcitation {
     /// In the unit of the command.
     pub amplitude: f64,

@@ -15,6 +15,11 @@ const MOST_SAMPLES: usize = 1 << 27;
 
 /// A signal that is added to the command; its amplitude is in the command's unit.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(rename_all = "kebab-case", deny_unknown_fields)
+)]
 pub enum Excitation {
     /// Pseudo-random binary sequence: all lines, the whole amplitude at every instant.
     Prbs(Prbs),

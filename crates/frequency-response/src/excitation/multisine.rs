@@ -18,6 +18,8 @@ const CLIPPED: [f64; 2] = [0.7, 0.98];
 
 /// Sines of one amplitude on lines of a period, their phases such that the sum has a low peak.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Multisine {
     /// Greatest value, in the unit of the command.
     pub amplitude: f64,

@@ -32,6 +32,8 @@ const TAPS: [&[u32]; 16] = [
 /// Its mean is 1/(2ⁿ − 1) of the amplitude, and its power over the frequency falls with the hold of
 /// its clock, (sin πfτ/πfτ)², τ the clock: 3.9 dB at half the clock's rate, nothing at that rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Prbs {
     /// Half the distance of its two values, in the unit of the command.
     pub amplitude: f64,

@@ -20,12 +20,15 @@ use std::f64::consts::TAU;
 
 use axis_fourier::Complex;
 
-use self::refine::{Described, Parameters};
+use self::refine::Described;
+pub(crate) use self::refine::Parameters;
 use crate::error::{ResponseError, check};
 use crate::estimate::FrequencyResponse;
 
 /// A number and the standard deviation of its error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Uncertain {
     /// The number.
     pub value: f64,
@@ -35,8 +38,11 @@ pub struct Uncertain {
 
 /// What is fitted, and to which lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct FitSettings {
     /// Lines from here to there, Hz.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored::band"))]
     pub band_hz: [f64; 2],
     /// Least coherence of a line that counts.
     pub coherence: f64,
@@ -85,12 +91,15 @@ impl FitSettings {
 
 /// A pair of complex poles.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct FittedMode {
     /// Undamped natural frequency |p|/2π, Hz.
     pub frequency_hz: Uncertain,
     /// Damping ratio −Re p/|p|; negative of a pole that is not stable.
     pub damping: Uncertain,
     /// Residue of the pole with the positive imaginary part, output per input and s.
+    #[cfg_attr(feature = "serde", serde(with = "crate::stored::complex"))]
     pub residue: Complex<f64>,
     /// Standard deviation of the residue's error in each direction, the greater one.
     pub residue_deviation: f64,
@@ -98,6 +107,8 @@ pub struct FittedMode {
 
 /// A real pole.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct FittedPole {
     /// −p, 1/s: the bandwidth of a lag, rad/s.
     pub rate: Uncertain,
@@ -107,6 +118,8 @@ pub struct FittedPole {
 
 /// A rational function with a delay, fitted to a response.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::stored::StoredFit"))]
 pub struct ModalFit {
     /// Pairs of complex poles, from low to high frequency; those of high damping among them, such as
     /// a current loop's.
@@ -124,12 +137,14 @@ pub struct ModalFit {
     pub lines: usize,
     /// Lowest and highest of them, Hz.
     pub band_hz: [f64; 2],
-    plane: Plane,
-    parameters: Parameters,
+    pub(crate) plane: Plane,
+    pub(crate) parameters: Parameters,
 }
 
 /// The plane in which poles are fitted, scaled to the highest line.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub(crate) struct Plane {
     /// The greatest ω, rad/s.
     pub scale: f64,

@@ -16,6 +16,8 @@ const FASTEST: f64 = 1e-6;
 /// The unknowns, scaled: (rate, residue) of each real pole, (−Re p, Im p, Re c, Im c) of each pair,
 /// the delay.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub(crate) struct Parameters {
     pub real: usize,
     pub pairs: usize,

@@ -6,7 +6,7 @@ mod error;
 mod lugre;
 mod maxwell;
 mod onset;
-mod statics;
+mod static_stribeck;
 mod steady;
 
 use core::fmt::Debug;
@@ -18,7 +18,7 @@ pub use classic_bouc_wen::ClassicBoucWen;
 pub use error::FrictionError;
 pub use maxwell::{MaxwellSlip, MaxwellSlipParameters, MaxwellState};
 pub use onset::{BoucWenOnset, DahlOnset, ElastoPlasticOnset, LinearOnset, Onset};
-pub use statics::{Regularisation, StaticFriction, StaticFrictionParameters};
+pub use static_stribeck::{Regularisation, StaticFriction, StaticFrictionParameters};
 pub use steady::{FrictionLevel, SteadyState};
 
 /// A friction law: a force or torque that depends on the sliding speed and on a state.

@@ -2,12 +2,12 @@
 
 use nalgebra::{DMatrix, DVector, SMatrix};
 
+use super::constant_speeds::{VIBRATION_LIMIT, check_runs, distinct_speeds, select};
 use super::error::FrictionIdentifyError;
 use super::estimate::ParameterEstimate;
 use super::least_squares::FitOutcome;
 use super::record::ConstantSpeedRun;
 use super::static_fit::StaticFit;
-use super::statics::{VIBRATION_LIMIT, check_runs, distinct_speeds, select};
 
 /// Fewest different speeds: one more than there are parameters with an offset.
 const NEEDED: usize = 4;

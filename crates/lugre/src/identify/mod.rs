@@ -13,6 +13,7 @@
 //! whatever sits between it and the sensors is for the caller to take out.
 //! The machine's inertia torque, too, where it is accelerating.
 
+mod constant_speeds;
 mod coulomb;
 mod curve;
 mod error;
@@ -25,9 +26,9 @@ mod record;
 mod report;
 mod series;
 mod static_fit;
-mod statics;
 mod trial;
 
+pub use constant_speeds::{VIBRATION_LIMIT, identify_static, identify_static_within};
 pub use coulomb::identify_coulomb;
 pub use error::FrictionIdentifyError;
 pub use estimate::ParameterEstimate;
@@ -37,4 +38,3 @@ pub use numbers::{Identifiable, IdentifiableOnset, Number, NumberKind, UnknownNu
 pub use presliding::{MeasuredMotion, PreslidingFit, PreslidingRecord, identify_presliding};
 pub use record::ConstantSpeedRun;
 pub use static_fit::{LeftOut, Reason, StaticFit, StaticKnowledge, StaticParameters};
-pub use statics::{VIBRATION_LIMIT, identify_static, identify_static_within};

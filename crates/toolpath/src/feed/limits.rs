@@ -4,6 +4,14 @@ use crate::error::{ToolpathError, positive, within};
 
 /// Limits of the axes, and the feed wanted along the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        try_from = "crate::stored::StoredLimits",
+        into = "crate::stored::StoredLimits"
+    )
+)]
 pub struct FeedLimits<const D: usize> {
     /// Feed along the path, m/s.
     pub feed: f64,
@@ -31,7 +39,7 @@ impl<const D: usize> FeedLimits<D> {
         }
     }
 
-    pub(super) fn check(&self) -> Result<(), ToolpathError> {
+    pub(crate) fn check(&self) -> Result<(), ToolpathError> {
         positive("feed", self.feed, "m/s")?;
         for i in 0..D {
             positive("velocity", self.velocity[i], "m/s")?;

@@ -10,6 +10,8 @@ use crate::{JunctionKind, Path, PathPoint};
 
 /// Motion along the path: arc length and its derivatives by time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct FeedPoint {
     /// Arc length, m.
     pub s: f64,

@@ -18,7 +18,7 @@ pub(super) fn state<T: Real>(
         state.velocity,
         maximum::VELOCITY,
         "m/s",
-        "from -1e6 to 1e6",
+        "from -1e9 to 1e9",
     )?;
     bounded(
         names[2],

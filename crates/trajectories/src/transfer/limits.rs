@@ -38,14 +38,14 @@ impl<T: Real> TransferLimits<T> {
             "velocity_min",
             velocity_min,
             "m/s",
-            "less than zero and at least -1e6",
+            "less than zero and at least -1e9",
         )?;
         let fast = check(
             velocity_max > T::ZERO && velocity_max <= most,
             "velocity_max",
             velocity_max,
             "m/s",
-            "greater than zero and at most 1e6",
+            "greater than zero and at most 1e9",
         )?;
         Ok(Self { back, fast, change })
     }

@@ -40,6 +40,8 @@ impl Default for Variation<'_> {
 
 /// How far a loop is from instability; the worst over χ of each.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Margins {
     /// Greatest sensitivity at the plant's input; infinite if the loop is not stable.
     pub sensitivity: f64,

@@ -10,6 +10,8 @@ use crate::model::{DriveModel, Mode};
 /// loops' gains, its actuator's limit, its control period, so that the defaults suit axes of
 /// any size. What they come to on the ball-screw axis of the reference machine is in brackets.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct FeedbackSettings {
     /// Whether the motor's speed is the difference of two angles, a cycle apart, and so half a
     /// cycle late; false.

@@ -52,23 +52,11 @@ impl<T: Exponential> Onset<T> for DahlOnset<T> {
         if x <= -T::ONE {
             return p;
         }
-        p * (ln_1p(x) / over).one_minus_exp()
+        p * (x.ln_1p() / over).one_minus_exp()
     }
 
     fn validate(&self) -> Result<(), FrictionError> {
         let range = [T::ZERO, T::of(10.0)];
         check_range("exponent", self.exponent, "between 0 and 10", range)
-    }
-}
-
-/// `ln(1 + x)` without cancellation: the rounding of 1 + x divides out (W. Kahan).
-fn ln_1p<T: Exponential>(x: T) -> T {
-    let sum = T::ONE + x;
-    if sum == T::ONE {
-        x
-    } else if sum.is_finite() {
-        sum.ln() * (x / (sum - T::ONE))
-    } else {
-        sum
     }
 }

@@ -1,6 +1,6 @@
 //! The end of a step of the elastic drive, as far as its load is known.
 
-use super::course::Course;
+use super::average_acceleration::Course;
 use super::prepared::{ElasticState, ElasticStepper};
 use super::transmission::Share;
 use crate::NutErrors;
