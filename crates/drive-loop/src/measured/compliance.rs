@@ -37,11 +37,11 @@ use serde::Serialize;
 
 use super::WithDeviation;
 use super::model_at::ModelAt;
-use crate::measured_plant::MeasuredPlant;
 use super::record::Recorded;
 use super::shapes::{Mode, modes_of};
 use crate::law::LoopAt;
 use crate::margins::COMPLIANCE;
+use crate::measured_plant::MeasuredPlant;
 use crate::plant::{LoopModel, Number, PlantAt};
 
 /// Distances of two lines below which drift and what the friction remembers are in a line: at 2 lines 20 % off,
