@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use axis_log::{Channel, Log};
-use axis_pipeline::heat::{FollowOptions, ModelHeat, SlowLog, SlowLogOptions, Warmth, fit, follow};
+use axis_pipeline::heat::{
+    FollowOptions, ModelHeat, SlowLog, SlowLogOptions, Warmth, fit, follow, warm_axis,
+};
 use axis_pipeline::strategies::SharedMotion;
 use axis_sim::Axis;
 use axis_thermal::{GrowthOf, GrowthZero};
@@ -450,4 +452,30 @@ fn logs_without_sense_are_refused() {
     let log = log(vec![time(), ("duty_1", vec![0.0, 0.0])]);
     let error = SlowLog::new(&other, &log, &options).err().unwrap();
     assert!(error.to_string().contains("no screw"), "{error}");
+}
+
+/// All levels of a dry friction are warm, and all parts of a viscous one.
+#[test]
+fn a_friction_by_direction_warms_as_a_whole() {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../data/axes");
+    let file = std::fs::read_to_string(folder.join("screw-heat.toml")).unwrap();
+    let level = "coulomb_n_m = 0.6757\n";
+    assert!(file.contains(level));
+    let more =
+        format!("{level}coulomb_backward_n_m = 0.6757\nviscous_quadratic_n_m_s2_per_rad2 = 1e-6\n");
+    let axis = Axis::parse("screw-heat.toml", &file.replace(level, &more)).unwrap();
+    let warm = warm_axis(&axis, [0.7, 0.4]).unwrap();
+    let [cold, warm] = [axis, warm].map(|axis| axis.friction.values().clone());
+    for (key, by) in [
+        ("coulomb", 0.7),
+        ("coulomb_backward", 0.7),
+        ("stiction", 0.7),
+        ("viscous_quadratic", 0.4),
+    ] {
+        let [cold, warm] = [&cold, &warm].map(|values| values.number(key).unwrap());
+        assert!(
+            (warm - by * cold).abs() < 1e-12 * cold,
+            "{key}: {cold} to {warm}"
+        );
+    }
 }

@@ -95,7 +95,7 @@ impl AxisLoops {
         // The peaks between the frequencies of the grid are brought to the limits.
         let mut kept: Option<LoopGains> = None;
         let mut share = KEPT;
-        for size in BROUGHT {
+        for size in BROUGHT.map(Some).into_iter().chain([None]) {
             let gains = self.gains_of(&best.0);
             let better = |before: &LoopGains| self.objective(&gains) < self.objective(before);
             if self.keeps(&gains, limits) && kept.as_ref().is_none_or(better) {
@@ -106,6 +106,9 @@ impl AxisLoops {
             if !over.is_finite() || (REACHED..=1.0).contains(&over) {
                 break;
             }
+            let Some(size) = size else {
+                break;
+            };
             share = (share * 0.5 * (1.0 + REACHED) / over).min(1.0);
             within = limits.tightened(share);
             best = search(&best.0, &within, size);

@@ -1,6 +1,7 @@
 //! Gains and filters of the axis file's own drive, such as `tune` sets them, in units that drives use.
 
 use axis_sim::Axis;
+use axis_sim::control::{NOTCH_DAMPING, NOTCH_DEPTH};
 use axis_sim::mechanism::Freedom;
 
 use super::terms::Term;
@@ -158,7 +159,12 @@ fn filters(axis: &Axis) -> Vec<Line> {
     let has_notch = values.optional("notch").is_some();
     let line = |(name, key, unit, meaning): (&'static str, &str, &str, &'static str)| {
         let is_of_notch = key.starts_with("notch");
-        let value = values.optional(key).filter(|_| has_notch || !is_of_notch)?;
+        let value = match key {
+            "notch_damping" => Some(values.or(key, NOTCH_DAMPING)),
+            "notch_depth" => Some(values.or(key, NOTCH_DEPTH)),
+            _ => values.optional(key),
+        };
+        let value = value.filter(|_| has_notch || !is_of_notch)?;
         Some((name, value, unit.into(), (1.0, unit.into()), meaning))
     };
     lines.into_iter().filter_map(line).collect()

@@ -135,10 +135,17 @@ impl Warmth for ModelHeat {
 pub fn warm_axis(axis: &Axis, [dry, viscous]: [f64; 2]) -> Result<Axis, PipelineError> {
     let mut axis = axis.clone();
     let changed = axis.friction.change(|values| {
-        for key in ["coulomb", "stiction"] {
+        for key in [
+            "coulomb",
+            "stiction",
+            "coulomb_backward",
+            "stiction_backward",
+        ] {
             values.scale(key, dry);
         }
-        values.scale("viscous", viscous);
+        for key in ["viscous", "viscous_quadratic", "viscous_cubic"] {
+            values.scale(key, viscous);
+        }
     });
     changed.map_err(axis_sim::SetupError::from)?;
     Ok(axis)

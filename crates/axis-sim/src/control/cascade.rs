@@ -28,6 +28,11 @@ use crate::part::units::{
 };
 use crate::part::{Known, PartError, PartKind, Role, Values, number, quantity, word};
 
+/// Damping of a notch's denominator, if a file does not state it.
+pub const NOTCH_DAMPING: f64 = 0.3;
+/// Share that a notch leaves at its middle, if a file does not state it.
+pub const NOTCH_DEPTH: f64 = 0.1;
+
 pub(super) static KIND: PartKind<dyn Control> = PartKind {
     name: "p-pi",
     summary: "cascade of a P position and a PI speed controller, feed-forward, filters",
@@ -160,7 +165,13 @@ fn build(v: &Values) -> Result<Arc<dyn Control>, PartError> {
         position_rate: v.optional("position_rate"),
         speed_lowpass: v.optional("speed_lowpass"),
         command_lowpass: v.optional("command_lowpass"),
-        notch: notch.map(|f| [f, v.or("notch_damping", 0.3), v.or("notch_depth", 0.1)]),
+        notch: notch.map(|f| {
+            [
+                f,
+                v.or("notch_damping", NOTCH_DAMPING),
+                v.or("notch_depth", NOTCH_DEPTH),
+            ]
+        }),
         effort: Effort::of_gain(v.unit("speed_proportional")),
     }))
 }

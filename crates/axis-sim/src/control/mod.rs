@@ -12,6 +12,8 @@ use std::fmt;
 use compensator::{Cascade, Correction};
 use trajectories::Setpoint;
 
+pub use cascade::{NOTCH_DAMPING, NOTCH_DEPTH};
+
 use crate::actuator::{Effort, Surroundings};
 use crate::cycle::Measured;
 use crate::mechanism::{Freedom, Mechanism};

@@ -295,4 +295,14 @@ mod tests {
             }
         }
     }
+
+    /// Keys with a default are in the values of every file, and a LuGre friction without them is the law LuGre.
+    #[test]
+    fn a_file_without_keys_of_the_curve_has_the_law_lugre() {
+        let file = include_str!("../../../../data/axes/linear-stage.toml");
+        let read = |file: &str| crate::Axis::parse("linear-stage.toml", file).unwrap();
+        assert!(read(file).friction.contact.is_none());
+        let bent = file.replace("coulomb_n = 4\n", "coulomb_n = 4\nstribeck_exponent = 1\n");
+        assert!(read(&bent).friction.contact.is_some());
+    }
 }

@@ -9,16 +9,10 @@ use crate::part::units::{
 use crate::part::{Key, PartError, Role, Values, number, quantity};
 
 /// δ of the Stribeck curve.
-pub(super) const STRIBECK_EXPONENT: Key = number("stribeck_exponent", 0.1, 10.0).or(2.0);
+pub(super) const STRIBECK_EXPONENT: Key = number("stribeck_exponent", 0.1, 10.0).or(EXPONENT);
 
-/// Keys of a curve that the law LuGre by itself has not.
-const BEYOND_LUGRE: [&str; 5] = [
-    "coulomb_backward",
-    "stiction_backward",
-    "stribeck_exponent",
-    "viscous_quadratic",
-    "viscous_cubic",
-];
+/// δ of the law LuGre.
+const EXPONENT: f64 = 2.0;
 
 pub(super) mod linear {
     use super::*;
@@ -84,14 +78,17 @@ pub(super) fn steady(v: &Values) -> Result<SteadyState, PartError> {
         forward,
         backward,
         stribeck_speed: v.number("stribeck_speed")?,
-        stribeck_exponent: v.or("stribeck_exponent", 2.0),
+        stribeck_exponent: v.or("stribeck_exponent", EXPONENT),
         viscous: v.number("viscous")?,
         viscous_quadratic: v.or("viscous_quadratic", 0.0),
         viscous_cubic: v.or("viscous_cubic", 0.0),
     })
 }
 
-/// Whether the curve has what LuGre by itself has not.
-pub(super) fn is_beyond_lugre(v: &Values) -> bool {
-    BEYOND_LUGRE.iter().any(|key| v.optional(key).is_some())
+/// Whether the curve has what LuGre by itself has not. Keys with a default are there in every file.
+pub(super) fn is_beyond_lugre(curve: &SteadyState) -> bool {
+    curve.backward != curve.forward
+        || curve.stribeck_exponent != EXPONENT
+        || curve.viscous_quadratic != 0.0
+        || curve.viscous_cubic != 0.0
 }

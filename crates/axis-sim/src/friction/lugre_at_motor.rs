@@ -6,7 +6,7 @@ use std::sync::Arc;
 use lugre::{LinearOnset, Parameters};
 
 use super::contact::of_bristle;
-use super::keys::{STRIBECK_EXPONENT, is_beyond_lugre, rotary};
+use super::keys::{STRIBECK_EXPONENT, is_beyond_lugre, rotary, steady};
 use super::{Friction, FrictionPlace};
 use crate::part::units::{BRISTLE_STIFFNESS, ROTARY_DAMPING, ROTATION, TORQUE};
 use crate::part::{Known, PartError, PartKind, Role, Values, quantity};
@@ -64,7 +64,7 @@ pub(super) const KNOWN: &[Known] = &[
 ];
 
 pub(super) fn build(v: &Values, at: FrictionPlace) -> Result<Arc<Friction>, PartError> {
-    if is_beyond_lugre(v) {
+    if is_beyond_lugre(&steady(v)?) {
         return of_bristle(v, at, LinearOnset {});
     }
     let parameters = Parameters {

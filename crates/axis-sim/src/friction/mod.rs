@@ -2,8 +2,8 @@
 //! and a viscous part are parameters, and other laws of the crate `lugre`.
 //!
 //! The simulated machine has the law of its kind. Plans, feed-forward and the search for what a
-//! model lacks know LuGre alone: they take the LuGre law with the same levels, stiffness and
-//! viscous part. What friction may have besides are effects ([`crate::effects`]).
+//! model lacks know LuGre alone: they take the LuGre law with the same stiffness, the means of both
+//! directions' levels, an exponent of 2, and the viscous part that is linear. What friction may have besides are effects ([`crate::effects`]).
 
 mod bouc_wen;
 mod contact;

@@ -66,7 +66,7 @@ pub struct MeasuredCompliance {
     pub modes: Vec<MeasuredShape>,
     /// Motion of the load per force in its direction with the gains of the file, m/N or rad/(N·m), line by line.
     pub lines: Vec<ComplianceLine>,
-    /// Greatest magnitude over the lines.
+    /// Greatest magnitude of the lines from 1 to 300 Hz.
     pub peak: WithDeviation,
     /// Its frequency, Hz.
     pub peak_at_hz: f64,
@@ -74,7 +74,7 @@ pub struct MeasuredCompliance {
     pub rms: WithDeviation,
     /// From which to which line that is, Hz.
     pub rms_band_hz: [f64; 2],
-    /// The model's greatest magnitude and root mean square over the same lines.
+    /// The model's greatest magnitude and root mean square over the lines of `rms`.
     pub model: [f64; 2],
     /// What is not in it, in words.
     pub notes: Vec<String>,
@@ -127,7 +127,7 @@ impl ToEffort {
         let effort = recorded.effort.ok_or_else(|| match recorded.command_unit {
             "V" => "the command is a voltage: what the motor exerts is not in the log".to_owned(),
             unit => format!(
-                "the log has no actual current, torque or force ({unit}) beside the command"
+                "the log does not have both the command and the actual current, torque or force ({unit})"
             ),
         })?;
         let is_angle = recorded.angle.is_some();
@@ -164,7 +164,9 @@ impl MeasuredCompliance {
         let fitted = fewest(&motor, &settings)
             .map_err(|error| format!("the motor's response has no fit: {error}"))?;
         let (modes, notes) = modes_of(axis, &fitted, &load, &settings, motor.step_hz)?;
-        let lines = lines(axis, at, plant, &modes, &measured.effort);
+        let mut lines = lines(axis, at, plant, &modes, &measured.effort);
+        // Beyond the fitted band nothing is known of modes.
+        lines.retain(|line| line.frequency_hz <= settings.band_hz[1]);
         let inside =
             |l: &&ComplianceLine| (COMPLIANCE[0]..=COMPLIANCE[1]).contains(&l.frequency_hz);
         let counted: Vec<ComplianceLine> = lines.iter().filter(inside).copied().collect();

@@ -103,7 +103,8 @@ pub(super) fn modes_of(
         let square = (mode.residue * by).re;
         let deviation = mode.residue_deviation * by.norm();
         let hz = mode.frequency_hz.value;
-        if square < SEEN * deviation {
+        let is_seen = square >= SEEN * deviation;
+        if !is_seen {
             notes.push(format!(
                 "the mode at {hz:.1} Hz is too weak at the motor to be used"
             ));

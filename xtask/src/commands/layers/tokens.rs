@@ -58,7 +58,10 @@ pub fn content(tokens: TokenStream) -> syn::Result<Content> {
                 }
                 at += 3;
             }
-            (keyword, Some(name)) if declares(keyword) && !declares(&name) => {
+            // `&'static super::Kind` declares nothing.
+            (keyword, Some(name))
+                if declares(keyword) && !declares(&name) && !is_lifetime(&tokens, at) =>
+            {
                 content.items.insert(name);
                 at += 2;
             }
@@ -186,6 +189,12 @@ fn end_of_item(tokens: &[TokenTree]) -> usize {
     };
     let end = tokens.iter().position(ends);
     end.map_or(tokens.len(), |end| end + 1)
+}
+
+/// Whether the word at this place names a lifetime.
+fn is_lifetime(tokens: &[TokenTree], at: usize) -> bool {
+    let before = at.checked_sub(1).and_then(|before| tokens.get(before));
+    before.is_some_and(|token| punct(token) == Some('\''))
 }
 
 fn declares(word: &str) -> bool {

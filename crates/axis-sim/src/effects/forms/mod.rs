@@ -168,8 +168,8 @@ fn acts_through_bristle(effect: &Effect) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{ActiveEffect, Formed, FrictionForm};
-    use crate::effects::Effect;
+    use super::{ActiveEffect, Changes, Formed, FrictionForm, Hooks};
+    use crate::effects::{Effect, TableState};
 
     fn forms(name: &str, values: &[f64], fall: Option<[f64; 2]>) -> Vec<ActiveEffect> {
         FrictionForm::all(&Formed {
@@ -235,6 +235,38 @@ mod tests {
                 assert!((form.at(speed) - expected).abs() < 1e-12);
             }
             assert!((form.with_speed() - 0.7).abs() < 1e-15);
+        }
+    }
+
+    /// What a smooth onset installs, and what is reported of it, at constant speed under a full bristle: friction that
+    /// falls comes on with the speed as a whole.
+    #[test]
+    fn a_smooth_onset_carries_what_falls() {
+        let (level, fall, velocity) = (40.0, 15.0, 0.01);
+        let all = forms("coulomb-friction", &[level], Some([fall, velocity]));
+        let mut active = (all.into_iter())
+            .find(|a| a.effect.name == "tanh-form")
+            .unwrap();
+        *active.values.last_chunk_mut().unwrap() = [1.0, 3e-3];
+        let file = include_str!("../../../../../data/axes/linear-motor.toml");
+        let mut axis = crate::Axis::parse("linear-motor.toml", file).unwrap();
+        let mut hooks = Hooks::default();
+        let mut changes = Changes {
+            axis: &mut axis,
+            hooks: &mut hooks,
+        };
+        (active.effect.install)(&active.values, &mut changes).unwrap();
+        for speed in [2e-4_f64, 3e-3, 0.05] {
+            let own = level + fall * (-(speed / velocity).powi(2)).exp();
+            let now = own * (speed / 3e-3).tanh();
+            let state = TableState {
+                speed,
+                bristle: 1.0,
+                ..TableState::default()
+            };
+            assert!((own + hooks.loads_at(&state) - now).abs() < 1e-9);
+            let form = FrictionForm::of(&active).unwrap();
+            assert!((own + level * (form.at(speed) - 1.0) - now).abs() < 1e-9);
         }
     }
 }

@@ -99,13 +99,13 @@ const fn family(
 pub(super) const ARCTAN: Family = family(
     &ARCTAN_FORM,
     |of| begins(of, &ARCTAN_FORM),
-    |active, speed| Onset::new(&active.values).bristle(1.0, speed, arctan),
+    |active, speed| Onset::new(&active.values).at(speed, arctan),
 );
 
 pub(super) const TANH: Family = family(
     &TANH_FORM,
     |of| begins(of, &TANH_FORM),
-    |active, speed| Onset::new(&active.values).bristle(1.0, speed, f64::tanh),
+    |active, speed| Onset::new(&active.values).at(speed, f64::tanh),
 );
 
 fn begins(of: &super::Formed, effect: &'static Effect) -> Vec<ActiveEffect> {
@@ -123,6 +123,8 @@ fn begins(of: &super::Formed, effect: &'static Effect) -> Vec<ActiveEffect> {
 /// The module's text in numbers.
 #[derive(Clone, Copy)]
 struct Onset {
+    /// Of a friction that falls: that of sliding.
+    level: f64,
     fall: f64,
     fall_velocity: f64,
     share: f64,
@@ -133,10 +135,20 @@ impl Onset {
     fn new(values: &[f64]) -> Self {
         let numbers: [f64; OWN + 4] = changes::array(values);
         Self {
+            level: numbers[1],
             fall: numbers[OWN],
             fall_velocity: numbers[OWN + 1],
             share: numbers[OWN + 2],
             velocity: numbers[OWN + 3],
+        }
+    }
+
+    /// Steady friction over that of sliding: what falls comes on along the curve too.
+    fn at(self, speed: f64, curve: impl Fn(f64) -> f64) -> f64 {
+        let onset = self.bristle(1.0, speed, curve);
+        match self.fall == 0.0 {
+            true => onset,
+            false => onset + self.falling(speed) / self.level * (onset - 1.0),
         }
     }
 

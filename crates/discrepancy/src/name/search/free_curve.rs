@@ -60,6 +60,9 @@ pub(super) struct FreeCurves<'a> {
 /// Rounds of a law's fit, each weighed by what the last one left.
 const ROUNDS: usize = 6;
 
+/// Shares of a step that are tried one after the other.
+const SHORTER: [f64; 4] = [1.0, 0.35, 0.12, 0.0];
+
 /// Fall of D that is worth another round with simulations.
 const ENOUGH: f64 = 0.5;
 
@@ -89,7 +92,9 @@ impl Beside {
         }
         Self {
             from: fit.state.clone(),
-            deviance: fitter.set.layout.deviance(&left) + BY_CHANCE * curve.columns.len() as f64,
+            deviance: fitter.set.layout.deviance(&left)
+                + fitter.departure(&fitter.moved(&fit.state, &step, 1.0))
+                + BY_CHANCE * curve.columns.len() as f64,
             step,
         }
     }
@@ -171,6 +176,7 @@ impl<'a> FreeCurves<'a> {
         all.sort_by(|(_, a), (_, b)| a.deviance.total_cmp(&b.deviance));
         let rivals = all.iter().take(TOLD * starts.len());
         let rivals = rivals.filter_map(|(curve, beside)| self.rival(curve, own, beside, effects));
+        let rivals = rivals.filter(|rival| (rival.fit + rival.check).is_finite());
         rivals.max_by(|a, b| (a.fit + a.check).total_cmp(&(b.fit + b.check)))
     }
 
@@ -214,10 +220,10 @@ impl<'a> FreeCurves<'a> {
     /// effects are: known parameters may have moved far to make up for it. The law's values, and the fit with it.
     fn refitted(&self, shape: &Shape, own: usize, beside: &Beside) -> Option<(Fit, Vec<f64>)> {
         let (search, fitter) = (self.search, self.search.fitter());
-        let at = |from: &State, values: &[f64], step: &DVector<f64>| {
-            let alone = fitter.at(fitter.moved(from, step, 1.0)).ok()?;
+        let at = |from: &State, values: &[f64], step: &DVector<f64>, length: f64| {
+            let alone = fitter.at(fitter.moved(from, step, length)).ok()?;
             let values: Vec<f64> = (values.iter().zip(step.iter().skip(own)))
-                .map(|(value, by)| value + by)
+                .map(|(value, by)| value + length * by)
                 .collect();
             let rest = shape.rest(search.machine, fitter.set, &alone, &values);
             let rest = fitter.set.amplitudes(&rest.ok()?);
@@ -230,16 +236,21 @@ impl<'a> FreeCurves<'a> {
             Some((fit, values))
         };
         let none = vec![0.0; shape.knots.len()];
-        let mut best = at(&beside.from, &none, &beside.step)?;
+        let mut best =
+            (SHORTER.iter()).find_map(|length| at(&beside.from, &none, &beside.step, *length))?;
         for _ in 0..ROUNDS {
             let (fit, values) = &best;
             let mut columns = fitter.known_columns(fit);
             columns.extend(fitter.effect_columns(fit, 0));
             columns.extend(shape.columns(&fitter, fit));
             let step = fitter.solve_beside(&fit.rest, fit, &columns).step;
-            match at(&fit.state, values, &step) {
-                Some(next) if next.0.deviance < fit.deviance - ENOUGH => best = next,
-                _ => break,
+            let next = (SHORTER.iter()).find_map(|length| {
+                let next = at(&fit.state, values, &step, *length)?;
+                (next.0.deviance < fit.deviance - ENOUGH).then_some(next)
+            });
+            match next {
+                Some(next) => best = next,
+                None => break,
             }
         }
         Some(best)
