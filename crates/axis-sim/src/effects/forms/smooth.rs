@@ -21,7 +21,7 @@ use crate::error::SetupError;
 use crate::part::PartError;
 
 /// Speeds v₀ from which a search begins, as shares of the greatest speed.
-const BEGINS: [f64; 4] = [2e-4, 1e-3, 5e-3, 2.5e-2];
+const BEGINS: [f64; 4] = [2e-4, 8e-4, 3e-3, 1.2e-2];
 
 /// Speeds between which a curve is shown, as shares of v₀: arctan is within 2 % of its end at the last.
 const SHOWN: [f64; 2] = [0.1, 30.0];
@@ -43,7 +43,9 @@ const PARAMETERS: [EffectParameter; OWN + 4] = [
         Measure::Speed,
         Nature::Speed([1e-4, 1e-3, 1e-2], [1e-4, 1e-2]),
         1e-3,
-        [1e-8, 1.0],
+        // A fiftieth of the paper's speed: above that it is no onset, but a curve over all speeds, which makes up for
+        // viscous friction and moves the level.
+        [1e-8, 2.4e-3],
     ),
 ];
 
