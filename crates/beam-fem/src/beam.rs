@@ -20,7 +20,7 @@ pub struct Beam {
     pub mesh: Mesh,
 }
 
-/// Assembled matrices of `M q̈ + K q = F`, each (6N + 6)², rows as [`Dof::at`].
+/// Assembled matrices of `M q̈ + K q = F`, each (6N + 6)², rows as [`Dof::at`](crate::Dof::at).
 #[derive(Clone, Debug, PartialEq)]
 pub struct BeamMatrices {
     /// Mass M, kg, kg·m and kg·m².

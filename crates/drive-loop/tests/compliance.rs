@@ -194,7 +194,10 @@ fn a_log_without_the_current_shows_no_compliance() {
         found.compliance_missing.unwrap()
     };
     let said = without("iq_a");
-    assert!(said.contains("no actual current"), "{said}");
+    assert!(
+        said.contains("both the command and the actual current"),
+        "{said}"
+    );
     let mut still = axis.clone();
     still.sensors.load = axis_sim::LoadSensor::Missing;
     let found = MeasuredDrive::of(&still, &whole, &MeasureSettings::default()).unwrap();

@@ -4,7 +4,7 @@ use axis_sim::Axis;
 use axis_sim::control::{NOTCH_DAMPING, NOTCH_DEPTH};
 use axis_sim::mechanism::Freedom;
 
-use super::terms::Term;
+use super::term::Term;
 use super::units::Units;
 
 /// (m/min)/mm of a Kv of 1/s: 60 s a minute over 1000 mm a metre. The same as 1000/min.

@@ -3,6 +3,7 @@
 
 mod gains;
 mod tables;
+mod term;
 mod terms;
 mod units;
 
@@ -14,7 +15,8 @@ use crate::compensation::{compensate_with, find};
 use crate::strategies::{NONE, Predictors, STRATEGIES, StrategyKind, named, reversal_start};
 use crate::{Figures, PipelineError};
 pub use tables::{TermTable, over_position, over_turn};
-pub use terms::{Term, terms};
+pub use term::Term;
+pub use terms::terms;
 
 /// Tracking errors of a trajectory, µm or µrad.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -2,27 +2,10 @@
 
 use axis_sim::Axis;
 use compensator::DriveTerms;
-use serde::Serialize;
 
 use super::gains::gains;
+use super::term::Term;
 use super::units::Units;
-
-/// A number that a drive takes.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Term {
-    /// Words in lower case, `_` between them.
-    pub name: &'static str,
-    /// In its SI unit.
-    pub value: f64,
-    /// That unit.
-    pub unit: String,
-    /// The same in a unit that drives use.
-    pub drive_value: f64,
-    /// That unit.
-    pub drive_unit: String,
-    /// What it is.
-    pub meaning: &'static str,
-}
 
 /// Name, value, its unit, factor to a drive's unit and that unit, meaning.
 type Line = (&'static str, f64, String, (f64, String), &'static str);

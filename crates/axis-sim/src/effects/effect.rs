@@ -71,7 +71,7 @@ pub struct Effect {
     pub needs: &'static [EffectNeed],
     /// Changes an axis; `values` are in the order of `parameters`.
     ///
-    /// An effect made elsewhere, outside of [`EFFECTS`], can be put into
+    /// An effect made elsewhere, outside of [`EFFECTS`](super::EFFECTS), can be put into
     /// [`crate::Axis::effects`] all the same; no search will name it.
     pub install: fn(values: &[f64], to: &mut Changes<'_>) -> Result<(), SetupError>,
 }

@@ -1,7 +1,7 @@
 //! Effects that a model may lack: a registry of components of the closed loop.
 //!
 //! An [`Effect`] is one file and one line of [`EFFECTS`]. It changes an axis
-//! by [`Changes`]: parameters by their [`Role`], whatever the kind of part, and
+//! by [`Changes`]: parameters by their [`Role`](crate::part::Role), whatever the kind of part, and
 //! hooks where the loop calls it (a load, a torque at the motor, the transmission's
 //! kinematics, what the sensors show). At its null value it changes nothing, to the bit.
 //!

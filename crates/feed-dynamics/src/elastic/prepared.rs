@@ -9,7 +9,7 @@ use crate::{DriveError, NutErrors};
 /// An elastic drive for steps of one length.
 ///
 /// The stiffness is held over a step at the position that speed and acceleration
-/// at its start lead to. The load may be anywhere: [`StepReport::on_screw`] is
+/// at its start lead to. The load may be anywhere: [`StepReport::on_screw`](crate::StepReport::on_screw) is
 /// always true.
 #[derive(Clone, Debug)]
 pub struct ElasticStepper {

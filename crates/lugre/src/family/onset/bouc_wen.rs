@@ -13,7 +13,7 @@ use crate::family::steady::{check_range, power};
 /// ```
 ///
 /// normalised as by F. Ikhouane and J. Rodellar (Nonlinear Dynamics 42, 2005, 63–78) with
-/// `σ = β/(β + γ)` and `z_ss` the greatest ζ, `(A/(β + γ))^{1/n}`. [`ClassicBoucWen`] takes A,
+/// `σ = β/(β + γ)` and `z_ss` the greatest ζ, `(A/(β + γ))^{1/n}`. [`ClassicBoucWen`](crate::ClassicBoucWen) takes A,
 /// β, γ.
 ///
 /// Exact for n = 1 and loading, and for unloading with σ = 1/2; otherwise a fourth-order
