@@ -112,5 +112,6 @@ fn a_load_is_named_alone_beside_an_onset_of_another_form() {
         1 => value(0),
         _ => 0.5 * (value(0) - value(1)),
     };
+    // Found: 3.26, as gravity may be off by 30 % and takes the rest.
     assert!((load / joint.load - 1.0).abs() < 0.1, "{load}");
 }

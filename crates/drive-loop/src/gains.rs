@@ -95,7 +95,8 @@ impl AxisLoops {
         // The peaks between the frequencies of the grid are brought to the limits.
         let mut kept: Option<LoopGains> = None;
         let mut share = KEPT;
-        for size in BROUGHT.map(Some).into_iter().chain([None]) {
+        let mut sizes = BROUGHT.into_iter();
+        loop {
             let gains = self.gains_of(&best.0);
             let better = |before: &LoopGains| self.objective(&gains) < self.objective(before);
             if self.keeps(&gains, limits) && kept.as_ref().is_none_or(better) {
@@ -106,7 +107,7 @@ impl AxisLoops {
             if !over.is_finite() || (REACHED..=1.0).contains(&over) {
                 break;
             }
-            let Some(size) = size else {
+            let Some(size) = sizes.next() else {
                 break;
             };
             share = (share * 0.5 * (1.0 + REACHED) / over).min(1.0);

@@ -12,7 +12,7 @@ pub enum Status {
     Ok = 0,
     /// What is asked for is not known (in FMI 2.0 alone).
     Discard = 2,
-    /// Refused or given up; the logger was told.
+    /// The call was refused or stopped; the message went to the logger.
     Error = 3,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! They lie far beyond any machine, so that no true motion is refused, and are there so that
 //! whoever steps through a motion, or counts its cycles, comes to an end: a frequency mistaken by
-//! its unit is told at once. A motion may be in counts of an encoder too. The fastest linear-motor axes reach about 10 m/s, 10³ m/s² and
+//! its unit is noticed at once. Positions may also be counts of an encoder. The fastest linear-motor axes reach about 10 m/s, 10³ m/s² and
 //! 10⁶ m/s³, over tens of metres; tests of their dynamics end at some kHz.
 
 /// Greatest distance of a position from zero, and greatest amplitude, m, or counts of an encoder: 60
@@ -11,7 +11,7 @@
 pub const POSITION: f64 = 1e9;
 /// Greatest velocity limit, m/s, or counts/s: 60 turns/s at 24 bits.
 pub const VELOCITY: f64 = 1e9;
-/// Greatest acceleration limit, m/s².
+/// Greatest acceleration limit, m/s², or counts/s²: 60 turns/s² at 24 bits, 950 at 20.
 pub const ACCELERATION: f64 = 1e9;
 /// Greatest jerk limit, m/s³; as good as none.
 pub const JERK: f64 = 1e15;

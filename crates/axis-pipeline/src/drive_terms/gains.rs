@@ -4,14 +4,11 @@ use axis_sim::Axis;
 use axis_sim::control::{NOTCH_DAMPING, NOTCH_DEPTH};
 use axis_sim::mechanism::Freedom;
 
-use super::term::Term;
+use super::term::{Line, Term};
 use super::units::Units;
 
 /// (m/min)/mm of a Kv of 1/s: 60 s a minute over 1000 mm a metre. The same as 1000/min.
 const PER_MINUTE: f64 = 0.06;
-
-/// Name, value, its unit, factor to a drive's unit and that unit, meaning.
-type Line = (&'static str, f64, String, (f64, String), &'static str);
 
 /// Gains of position, speed and current controller and filters, as far as the file has them.
 pub(super) fn gains(axis: &Axis) -> Vec<Term> {
@@ -19,15 +16,7 @@ pub(super) fn gains(axis: &Axis) -> Vec<Term> {
     list.extend(pid(axis));
     list.extend(filters(axis));
     list.extend(current(axis));
-    let term = |(name, value, unit, (factor, drive_unit), meaning): Line| Term {
-        name,
-        value,
-        unit,
-        drive_value: factor * value,
-        drive_unit,
-        meaning,
-    };
-    list.into_iter().map(term).collect()
+    list.into_iter().map(Term::from).collect()
 }
 
 fn cascade(axis: &Axis) -> Vec<Line> {

@@ -2,6 +2,9 @@
 
 use serde::Serialize;
 
+/// Name, value, its unit, factor to a drive's unit and that unit, meaning.
+pub(super) type Line = (&'static str, f64, String, (f64, String), &'static str);
+
 /// A number that a drive takes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Term {
@@ -17,4 +20,17 @@ pub struct Term {
     pub drive_unit: String,
     /// What it is.
     pub meaning: &'static str,
+}
+
+impl From<Line> for Term {
+    fn from((name, value, unit, (factor, drive_unit), meaning): Line) -> Self {
+        Self {
+            name,
+            value,
+            unit,
+            drive_value: factor * value,
+            drive_unit,
+            meaning,
+        }
+    }
 }

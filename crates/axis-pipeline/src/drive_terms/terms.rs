@@ -4,11 +4,8 @@ use axis_sim::Axis;
 use compensator::DriveTerms;
 
 use super::gains::gains;
-use super::term::Term;
+use super::term::{Line, Term};
 use super::units::Units;
-
-/// Name, value, its unit, factor to a drive's unit and that unit, meaning.
-type Line = (&'static str, f64, String, (f64, String), &'static str);
 
 /// Every number, in SI units and in those that drives use, and the gains and filters of the axis file's
 /// own drive. What is no number on this axis (a ratio to an inertia of 0) is left out.
@@ -199,14 +196,6 @@ pub fn terms(axis: &Axis, of: &DriveTerms) -> Vec<Term> {
             "travel lost to wind-up by friction from one direction to the other, at mid-stroke; for a position loop closed at the motor",
         ),
     ];
-    let term = |(name, value, unit, (factor, drive_unit), meaning): Line| Term {
-        name,
-        value,
-        unit,
-        drive_value: factor * value,
-        drive_unit,
-        meaning,
-    };
-    let list = list.into_iter().map(term).chain(gains(axis));
+    let list = list.into_iter().map(Term::from).chain(gains(axis));
     list.filter(|t| t.drive_value.is_finite()).collect()
 }

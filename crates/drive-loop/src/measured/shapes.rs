@@ -45,7 +45,7 @@ impl Term {
     }
 }
 
-/// The rigid motion first, then the elastic modes that motor and load show; and what is left out.
+/// The rigid motion, then the elastic modes that motor and load both show; and notes on modes that are left out.
 pub(super) fn modes_of(
     axis: &Axis,
     fit: &ModalFit,
@@ -106,7 +106,7 @@ pub(super) fn modes_of(
         let is_seen = square >= SEEN * deviation;
         if !is_seen {
             notes.push(format!(
-                "the mode at {hz:.1} Hz is too weak at the motor to be used"
+                "a pole pair of the fit at {hz:.1} Hz does not stand out of its error at the motor and is left out"
             ));
             continue;
         }

@@ -193,9 +193,10 @@ fn compliance(found: &MeasuredDrive) -> String {
         let why = found.compliance_missing.as_deref().unwrap_or("no reason");
         return format!("  compliance at the load: none, as {why}\n");
     };
-    let (unit, scale) = match found.position_unit.as_str() {
-        "m" => ("nm/N", 1e9),
-        _ => ("nrad/(N·m)", 1e9),
+    let scale = 1e9;
+    let unit = match found.position_unit.as_str() {
+        "m" => "nm/N",
+        _ => "nrad/(N·m)",
     };
     let mut text = format!(
         "  compliance at the load from the responses: greatest {} {unit} at {:.1} Hz, {} from {:.0} to {:.0} Hz (RMS); model {} and {}\n",

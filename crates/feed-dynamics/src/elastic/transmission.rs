@@ -42,8 +42,8 @@ pub(super) struct Transmission {
     pub(super) stiffness: f64,
     /// βk, N·s/m.
     pub(super) damping: f64,
-    /// Without a gap, over a step with the force of both ends: what is left of a force once
-    /// it has moved both sides, and the force that a newton of load brings about.
+    /// Without a gap, over a step with the force of both ends: the share of a force that remains after
+    /// both sides have moved under it, and the force per newton of load.
     pub(super) left: f64,
     pub(super) per_load: f64,
 }

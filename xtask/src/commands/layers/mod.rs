@@ -25,10 +25,12 @@ pub fn command() -> Result<()> {
             "layers: {crates} crates depend strictly downward, and no files of one take from one another in a circle"
         ));
     }
+    let found = found
+        .join("\n")
+        .replace(&format!("{}/", root.display()), "");
     Err(miette!(
         help = "move what both need into a file that needs neither",
-        "files take from one another in a circle:\n{}",
-        found.join("\n")
+        "files take from one another in a circle:\n{found}"
     ))
 }
 
