@@ -97,7 +97,7 @@ class Friction:
 
 
 def load(hidden, m, x, v, t):
-    """The hidden force against positive motion, N."""
+    """The hidden force on the load against positive motion, N."""
     u = x - m["middle"]
     force = hidden.get("load", 0.0) + hidden.get("spring", 0.0) * u
     for name, law in LAWS.items():
@@ -107,7 +107,6 @@ def load(hidden, m, x, v, t):
 
 
 LAWS = {
-    "cogging": lambda h, u, x, v, t: h[0] * math.sin(2 * math.pi * x / h[1] + h[2]),
     "cyclic": lambda h, u, x, v, t: h[0] * math.sin(2 * math.pi * t * h[1] + 0.4),
     "x2": lambda h, u, x, v, t: h[0] * (u / h[1]) ** 2,
     "xv": lambda h, u, x, v, t: h[0] * u * v / h[1],
@@ -157,16 +156,19 @@ def simulate(m, moves, hidden, onset, random):
             force += stribeck[0] * math.exp(-abs(v) / stribeck[1]) * math.tanh(v / m["onset"])
         force *= 1 - hidden.get("thermal", 0.0) * (1 - math.exp(-t / 3))
         force += load(hidden, m, x, v, t) + gravity * math.cos(x)
+        # Cogging acts on the motor, at its own position.
+        drawn = hidden["cogging"] if "cogging" in hidden else (0.0, 1.0, 0.0)
+        cogging = drawn[0] * math.sin(2 * math.pi * (motor if m["stiffness"] else x) / drawn[1] + drawn[2])
         # A current is logged as it flows, anything else as it is commanded.
         xs[k], us[k] = motor if at_motor else x, acting if m["channel"] == "iq_a" else command
         if m["stiffness"]:
             twist = motor - x + error * math.sin(2 * m["ratio"] * motor) if error else motor - x
             spring = m["stiffness"] * twist + m["damping"] * (motor_v - v)
-            motor_v += (acting - spring) / m["motor_mass"] * STEP
+            motor_v += (acting - spring - cogging) / m["motor_mass"] * STEP
             motor += motor_v * STEP
             v += (spring - force) / m["mass"] * STEP
         else:
-            v += (acting - force) / m["mass"] * STEP
+            v += (acting - force - cogging) / m["mass"] * STEP
         x += v * STEP
     return xs, us
 

@@ -145,9 +145,13 @@ impl Measured {
         &self.samples
     }
 
-    /// Low-passed at `cutoff` (Hz), and differentiated.
+    /// Low-passed at `cutoff` (Hz), and differentiated; the acceleration as it is expected to be without noise.
     pub fn course(&self, period: f64, cutoff: f64) -> Course {
-        self.smoothed(&self.samples, period, cutoff)
+        let course = self.smoothed(&self.samples, period, cutoff);
+        Course {
+            acceleration: self.noise.expected(&course.acceleration, period),
+            ..course
+        }
     }
 
     /// What of a course this channel shows.

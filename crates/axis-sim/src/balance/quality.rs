@@ -15,7 +15,8 @@ pub struct BalanceQuality {
     pub reason: CutoffReason,
     /// Cut-off of the low-pass of the motion before it is differentiated, Hz.
     pub motion_cutoff: f64,
-    /// Share by which noise of the acceleration draws an inertia towards zero.
+    /// Share of the acceleration's power below the cut-off that is noise: by so much an inertia would be drawn
+    /// towards zero if the acceleration were taken as measured.
     pub attenuation: f64,
     /// Speed up to which nothing is compared, m/s or rad/s: that which the sensor distinguishes
     /// from standstill, or the axis file's `slowest`.
@@ -38,7 +39,7 @@ impl BalanceQuality {
         let [kept, all] = self.samples;
         let beware = match self.attenuation > TOLERATED {
             true => format!(
-                "; noise of the acceleration makes inertia and friction too small by about {:.2} %",
+                "; {:.2} % of the acceleration's power is noise, and the acceleration is taken as it is expected without it",
                 100.0 * self.attenuation
             ),
             false => String::new(),
