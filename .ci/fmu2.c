@@ -1,13 +1,9 @@
 /* A unit of FMI 2.0 as a program in C takes it, by the standard's headers: fmu2 GUID RESOURCES STEP INPUT OUTPUT.
  * Prints the output at twenty points, and again after a state was saved as bytes and read. */
 #include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "fmi2Functions.h"
-
-static int told = 0;
+#include "fmu.h"
 
 static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, fmi2String category,
                    fmi2String message, ...) {
@@ -19,14 +15,6 @@ static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2St
     told += environment == (void *)0x77 && status == fmi2Error && strcmp(name, "100 %s") == 0 &&
             strcmp(category, "logStatusError") == 0 && strstr(text, "valid:") != NULL;
 }
-
-#define CHECK(call, status)                                  \
-    do {                                                     \
-        if ((call) != (status)) {                            \
-            fprintf(stderr, "line %d: %s\n", __LINE__, #call); \
-            return 1;                                        \
-        }                                                    \
-    } while (0)
 
 static int follow(fmi2Component unit, double step, fmi2ValueReference output, int from, int to) {
     for (int k = from; k < to; k++) {

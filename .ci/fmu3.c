@@ -1,26 +1,14 @@
 /* A unit of FMI 3.0 as a program in C takes it, by the standard's headers: fmu3 TOKEN RESOURCES STEP INPUT OUTPUT.
  * Prints the output at twenty points, and the last ten again after a state was saved as bytes and read. */
 #include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "fmi3Functions.h"
-
-static int told = 0;
+#include "fmu.h"
 
 static void logger(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String category, fmi3String message) {
     told += environment == (void *)0x77 && status == fmi3Error && strcmp(category, "logStatusError") == 0 &&
             strstr(message, "valid:") != NULL;
 }
-
-#define CHECK(call, status)                                  \
-    do {                                                     \
-        if ((call) != (status)) {                            \
-            fprintf(stderr, "line %d: %s\n", __LINE__, #call); \
-            return 1;                                        \
-        }                                                    \
-    } while (0)
 
 static int follow(fmi3Instance unit, double step, fmi3ValueReference output, int from, int to) {
     for (int k = from; k < to; k++) {

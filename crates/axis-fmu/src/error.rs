@@ -1,5 +1,6 @@
 //! What a unit refuses.
 
+use axis_machine::{MachineError, MachineFileError};
 use axis_pipeline::PipelineError;
 use axis_sim::{AxisFileError, RunStopped, SetupError};
 use thiserror::Error;
@@ -15,6 +16,15 @@ pub enum UnitError {
     /// The axis cannot be simulated, or not begin there.
     #[error(transparent)]
     Setup(#[from] SetupError),
+    /// The machine file, or a parameter that was set, makes no machine.
+    #[error(transparent)]
+    MachineFile(Box<MachineFileError>),
+    /// The machine cannot begin there.
+    #[error(transparent)]
+    Machine(Box<MachineError>),
+    /// The run of a machine had to be given up, as that of an axis.
+    #[error("{0}; reset the unit, or set it to a state that was saved before")]
+    MachineStopped(Box<MachineError>),
     /// The run had to be given up. An earlier state, a reset or the end are what is left.
     #[error("{0}; reset the unit, or set it to a state that was saved before")]
     Stopped(#[from] RunStopped),
@@ -88,7 +98,16 @@ pub enum UnitError {
     /// A compensated unit without its correction.
     #[error("a compensated unit is made of an axis and a correction; valid: both, or another kind")]
     NoCorrection,
-    /// An axis file that is no TOML table of tables after a parameter was set.
-    #[error("the axis file cannot be changed: {0}")]
+    /// A unit of a machine that is to be made of one axis.
+    #[error("a unit of a machine is made of a machine file; valid: that, or another kind")]
+    NoMachine,
+    /// An axis or machine file that is no TOML table of tables after a change.
+    #[error("the file cannot be changed: {0}")]
     Text(String),
+}
+
+impl From<MachineFileError> for UnitError {
+    fn from(error: MachineFileError) -> Self {
+        Self::MachineFile(Box::new(error))
+    }
 }

@@ -1,6 +1,6 @@
 //! Kinds of units.
 
-/// What of an axis a unit is.
+/// What of an axis or a machine a unit is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum UnitKind {
     /// The axis in its closed loop: references in, motion out.
@@ -12,6 +12,9 @@ pub enum UnitKind {
     /// The closed loop with a correction in it: the axis follows its references as many control
     /// periods late as the correction looks ahead.
     Compensated,
+    /// Two or three axes on one path, each in its closed loop, and what lies between them: references
+    /// of all axes in, their motion and that of the tool out.
+    Machine,
 }
 
 /// What stands in the token of a compensated unit before the digest of its correction.
@@ -24,6 +27,7 @@ impl UnitKind {
             Self::ClosedLoop => "closed loop",
             Self::Plant => "plant alone",
             Self::Compensated => "compensated closed loop",
+            Self::Machine => "machine of several axes in closed loops",
         }
     }
 
@@ -32,6 +36,7 @@ impl UnitKind {
         match self {
             Self::ClosedLoop => String::new(),
             Self::Plant => "-plant".to_owned(),
+            Self::Machine => "-machine".to_owned(),
             Self::Compensated => format!("{COMPENSATED}{digest:016x}"),
         }
     }
@@ -40,6 +45,7 @@ impl UnitKind {
     pub fn of_token(token: &str) -> Self {
         match () {
             () if token.ends_with(&Self::Plant.mark(0)) => Self::Plant,
+            () if token.ends_with(&Self::Machine.mark(0)) => Self::Machine,
             () if token.contains(COMPENSATED) => Self::Compensated,
             () => Self::ClosedLoop,
         }

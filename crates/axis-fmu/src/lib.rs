@@ -1,17 +1,18 @@
-//! An axis as a unit of the Functional Mock-up Interface, so that other programs simulate it
+//! An axis or a machine as a unit of the Functional Mock-up Interface, so that other programs simulate it
 //! beside their own models: co-simulation by FMI 3.0 (Modelica Association, *Functional Mock-up
 //! Interface Specification 3.0.2*, <https://fmi-standard.org/docs/3.0.2/>) and by FMI 2.0
 //! (*Functional Mock-up Interface for Model Exchange and Co-Simulation 2.0.5*,
 //! <https://github.com/modelica/fmi-standard/releases/tag/v2.0.5>).
 //!
-//! - [`UnitKind`]: an axis in its closed loop, the same with a correction in it, or the machine alone.
+//! - [`UnitKind`]: an axis in its closed loop, the same with a correction in it, its machine alone, or
+//!   two or three axes on one path.
 //! - [`UnitCorrection`]: the strategy that corrects, and what was found for it.
 //! - [`Unit`]: one instance. It takes set points and a force, makes control cycles with
 //!   [`axis_sim::ClosedLoop::step`], and shows what machine and drive do. It refuses whatever
 //!   comes in the wrong order.
-//! - [`Variables`]: its inputs, outputs and parameters, made of the axis file.
+//! - [`Variables`]: its inputs, outputs and parameters, made of the axis or machine file.
 //! - [`FmiVersion`]: what differs between the two, the description and the names of folders.
-//! - [`package`]: the file, a ZIP archive of description, library and axis file.
+//! - [`package`]: the file, a ZIP archive of description, library and files.
 //!
 //! The interface in C is another crate, `feed-axis-fmu`: a library that serves every axis, as it
 //! reads the axis file from the unit's resources.
@@ -35,20 +36,27 @@
 
 mod correction;
 mod description;
+mod digest;
 mod error;
+mod given;
 mod history;
 mod kind;
 mod library;
 mod library_mark;
+mod machine;
+mod machine_run;
 mod measure;
 mod mode;
+mod one_axis;
 mod outputs;
+mod paced;
 mod package;
 mod package_error;
 mod parameters;
 mod plant;
 mod run;
 mod simulated;
+mod subject;
 mod unit;
 mod variables;
 mod version;
@@ -61,8 +69,9 @@ pub use library::{UnitLibrary, library_file};
 pub use library_mark::LIBRARY_MARK;
 pub use measure::UnitDefinition;
 pub use mode::FmiMode;
-pub use package::{AXIS_FILE, CORRECTION_FILE, package};
+pub use package::package;
 pub use package_error::PackageError;
+pub use subject::{AXIS_FILE, CORRECTION_FILE, MACHINE_FILE};
 pub use unit::Unit;
 pub use variables::{Variable, VariableKind, Variables};
 pub use version::FmiVersion;

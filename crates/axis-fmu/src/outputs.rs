@@ -15,10 +15,39 @@ pub(crate) enum Source {
     Current(fn(&LoopState) -> f64),
     /// What the drive sampled and commanded in its last cycle.
     Drive(fn(&Cycle) -> f64),
+    /// The tool of a machine, now, along an axis.
+    Tool,
+}
+
+impl Source {
+    /// Of a closed loop: where its machine is, and its drive's last cycle.
+    pub fn of_loop(&self, shown: &LoopState, cycle: &Cycle) -> f64 {
+        match self {
+            Self::Machine(read, times) => times * read(shown.plant().seen()),
+            Self::Current(read) => read(shown),
+            Self::Drive(read) => read(cycle),
+            Self::Tool => f64::NAN,
+        }
+    }
+}
+
+/// How an output is read.
+#[derive(Clone, Copy, Debug)]
+pub struct Output {
+    pub(crate) source: Source,
+    /// Of which drive of the unit, from 0; of the tool, along which axis.
+    pub(crate) of: usize,
+}
+
+impl Output {
+    /// Whether it changes with control cycles alone, and not in between.
+    pub fn is_sampled(&self) -> bool {
+        matches!(self.source, Source::Drive(_))
+    }
 }
 
 /// An output: name, unit, meaning, and where it is read.
-pub(crate) struct Output {
+pub(crate) struct Column {
     pub name: String,
     pub unit: &'static str,
     pub meaning: &'static str,
@@ -63,7 +92,7 @@ const CURRENTS: &[Line<LoopState>] = &[
 ];
 
 /// The outputs of an axis; of a plant, only those of the mechanics.
-pub(crate) fn outputs(axis: &Axis, kind: UnitKind) -> Vec<Output> {
+pub(crate) fn outputs(axis: &Axis, kind: UnitKind) -> Vec<Column> {
     let load = match axis.freedom() {
         Freedom::Linear => LINEAR,
         Freedom::Rotary => ROTARY,
@@ -73,7 +102,7 @@ pub(crate) fn outputs(axis: &Axis, kind: UnitKind) -> Vec<Output> {
         true => (FORCE, 1.0 / axis.travel_per_radian()),
         false => (MOTOR, 1.0),
     };
-    let machine = |name: &str, unit, meaning, source| Output {
+    let machine = |name: &str, unit, meaning, source| Column {
         name: format!("machine.{name}"),
         unit,
         meaning,
@@ -98,7 +127,7 @@ pub(crate) fn outputs(axis: &Axis, kind: UnitKind) -> Vec<Output> {
     let drive = channels(axis).into_iter().filter(is_told);
     all.extend(drive.map(|channel| {
         let [name, unit] = channel.of_freedom(axis.freedom());
-        Output {
+        Column {
             name: format!("drive.{name}"),
             unit,
             meaning: "in the drive's last control cycle, as in a log",

@@ -11,12 +11,6 @@ use crate::package_error::PackageError;
 use crate::unit::Unit;
 use crate::version::FmiVersion;
 
-/// The axis file among the unit's resources.
-pub const AXIS_FILE: &str = "axis.toml";
-
-/// The correction of a compensated unit, among them.
-pub const CORRECTION_FILE: &str = "correction.json";
-
 /// The bytes of the unit's file in that version of FMI, with these libraries. The same inputs give the
 /// same bytes.
 ///
@@ -36,21 +30,15 @@ pub fn package(
         .compression_method(CompressionMethod::Deflated)
         .last_modified_time(DateTime::default())
         .unix_permissions(0o644);
-    let mut files = vec![
-        (
-            "modelDescription.xml".to_owned(),
-            description.as_bytes(),
-            plain,
-        ),
-        (
-            format!("resources/{AXIS_FILE}"),
-            unit.text().as_bytes(),
-            plain,
-        ),
-    ];
-    files.extend(unit.correction().map(|correction| {
-        let path = format!("resources/{CORRECTION_FILE}");
-        (path, correction.text().as_bytes(), plain)
+    let own = (
+        "modelDescription.xml".to_owned(),
+        description.as_bytes(),
+        plain,
+    );
+    let mut files = vec![own];
+    files.extend(unit.resources().into_iter().map(|(name, text)| {
+        let path = format!("resources/{name}");
+        (path, text.as_bytes(), plain)
     }));
     for (i, library) in libraries.iter().enumerate() {
         let platform = library.platform(version)?;

@@ -1,5 +1,7 @@
 //! Parameters: the numbers of the axis file's parts, by table and key.
 
+use std::borrow::Cow;
+
 use axis_sim::part::Key;
 use axis_sim::{Axis, Registry, TABLES_WITHOUT_PARTS};
 use toml_edit::{DocumentMut, Item, TableLike, Value};
@@ -77,23 +79,47 @@ fn limits(key: &Key, factor: f64, value: f64) -> Option<[f64; 2]> {
         .then_some(limits)
 }
 
-/// The axis of `text` with other numbers: table, key, number in the key's unit.
+/// Where a parameter stands.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Place<'a> {
+    /// In the axis file of a drive.
+    Drive {
+        /// Which drive of the unit, from 0.
+        drive: usize,
+        table: &'a str,
+        key: &'a str,
+    },
+    /// Among the numbers of the machine file.
+    Machine(usize),
+}
+
+/// A parameter that is not as its file has it, and its number, in its unit.
+pub(crate) type Changed<'a> = (Place<'a>, f64);
+
+/// The axis of `text` with those parameters that stand in it.
 ///
 /// # Errors
 /// As [`Axis::parse`]: the words of the axis file's checks.
-pub(crate) fn with<'a>(
+pub(crate) fn changed<'a>(
+    axis: &'a Axis,
     name: &str,
     text: &str,
-    changed: impl Iterator<Item = (&'a str, &'a str, f64)>,
-) -> Result<Axis, UnitError> {
+    changed: &[Changed<'_>],
+) -> Result<Cow<'a, Axis>, UnitError> {
+    if changed.is_empty() {
+        return Ok(Cow::Borrowed(axis));
+    }
     let mut document = document(text)?;
-    for (table, key, number) in changed {
+    for (place, number) in changed {
+        let Place::Drive { table, key, .. } = place else {
+            continue;
+        };
         let table = document.get_mut(table).and_then(Item::as_table_like_mut);
         if let Some(item) = table.and_then(|table| table.get_mut(key)) {
-            *item = Item::Value(Value::from(number));
+            *item = Item::Value(Value::from(*number));
         }
     }
-    Ok(Axis::parse(name, &document.to_string())?)
+    Ok(Cow::Owned(Axis::parse(name, &document.to_string())?))
 }
 
 fn document(text: &str) -> Result<DocumentMut, UnitError> {

@@ -7,7 +7,10 @@ use axis_sim::plant::{AdvanceError, Running, Seen};
 use axis_sim::{Axis, ClosedLoop, Measured, RunStopped, Start, Stop, StopReason};
 
 use crate::error::UnitError;
-use crate::run::{Given, SAME_POINT, motor_torque};
+use crate::given::Inputs;
+use crate::outputs::{Output, Source};
+use crate::paced::SAME_POINT;
+use crate::simulated::Simulation;
 
 /// The machine of an axis under a motor torque that is held between two points of communication.
 #[derive(Debug)]
@@ -59,7 +62,7 @@ impl Actuating for Held {
 impl PlantRun {
     /// At rest at the reference's position, under the loads that the axis has there and the torque
     /// that holds them.
-    pub fn begin(axis: &Axis, given: &Given) -> Result<Self, UnitError> {
+    pub fn begin(axis: &Axis, [given, ..]: &Inputs) -> Result<Self, UnitError> {
         let closed_loop = ClosedLoop::new(axis)?;
         let state = closed_loop.start(&Start::at(given.reference.position))?;
         Ok(Self {
@@ -71,36 +74,8 @@ impl PlantRun {
         })
     }
 
-    /// The machine as outputs show it.
-    pub fn seen(&self) -> &Seen {
+    fn seen(&self) -> &Seen {
         self.machine.seen()
-    }
-
-    /// Control periods since the start.
-    pub fn periods(&self) -> f64 {
-        self.whole as f64 + (self.parts + self.owed)
-    }
-
-    /// Runs on by `periods` control periods under the inputs. Where that is no whole number, the
-    /// last step is shorter, and the next begins where it ended.
-    pub fn run_on(&mut self, periods: f64, given: &Given) -> Result<(), UnitError> {
-        let mut motor = Held(motor_torque(&self.axis, given));
-        self.machine.set_outer_load(given.load);
-        let target = self.owed + periods;
-        let whole = (target + SAME_POINT).floor();
-        for _ in 0..whole as u64 {
-            let ran = self.machine.advance(&mut motor);
-            self.check(ran)?;
-            self.whole += 1;
-        }
-        self.owed = target - whole;
-        if self.owed > SAME_POINT {
-            let ran = self.machine.advance_part(self.owed, &mut motor);
-            self.check(ran)?;
-            self.parts += self.owed;
-            self.owed = 0.0;
-        }
-        Ok(())
     }
 
     /// Whether the run can go on, by what the closed loop looks at, too.
@@ -131,5 +106,43 @@ impl PlantRun {
                 stroke,
             },
         }))
+    }
+}
+
+impl Simulation for PlantRun {
+    fn periods(&self) -> f64 {
+        self.whole as f64 + (self.parts + self.owed)
+    }
+
+    /// Where `periods` is no whole number, the last step is shorter, and the next begins where it ended.
+    fn run_on(&mut self, periods: f64, [given, ..]: &Inputs, _: bool) -> Result<(), UnitError> {
+        let mut motor = Held(given.motor_torque(&self.axis));
+        self.machine.set_outer_load(given.load);
+        let target = self.owed + periods;
+        let whole = (target + SAME_POINT).floor();
+        for _ in 0..whole as u64 {
+            let ran = self.machine.advance(&mut motor);
+            self.check(ran)?;
+            self.whole += 1;
+        }
+        self.owed = target - whole;
+        if self.owed > SAME_POINT {
+            let ran = self.machine.advance_part(self.owed, &mut motor);
+            self.check(ran)?;
+            self.parts += self.owed;
+            self.owed = 0.0;
+        }
+        Ok(())
+    }
+
+    fn read(&self, output: &Output) -> f64 {
+        match output.source {
+            Source::Machine(read, times) => times * read(self.seen()),
+            Source::Current(_) | Source::Drive(_) | Source::Tool => f64::NAN,
+        }
+    }
+
+    fn copy(&self) -> Box<dyn Simulation> {
+        Box::new(self.clone())
     }
 }

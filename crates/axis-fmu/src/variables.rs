@@ -1,12 +1,14 @@
 //! The variables of a unit: one table, made of the axis.
 
+use axis_machine::MachineNumber;
 use axis_sim::Axis;
 use axis_sim::mechanism::Freedom;
 
 use crate::error::UnitError;
+use crate::given::Quantity;
 use crate::kind::UnitKind;
 use crate::measure::UnitDefinition;
-use crate::outputs::{Source, is_force, outputs};
+use crate::outputs::{Output, Source, is_force, outputs};
 use crate::parameters::parameters;
 
 /// The parameter of what outputs show between two samples.
@@ -56,11 +58,15 @@ pub enum VariableKind {
     Output(Output),
     /// A number of the axis file, set before the initialisation ends.
     Parameter {
+        /// Whose axis file: which drive of the unit, from 0.
+        drive: usize,
         /// Table of the axis file.
         table: String,
         /// Key in it, with its unit.
         key: String,
     },
+    /// A number of the machine file, by its place among them. Set before the initialisation ends.
+    MachineNumber(usize),
     /// A parameter: 1 where outputs at a point between two samples show the machine as it is there,
     /// 0 where they show it as of the last sample. Set before the initialisation ends.
     ExactBetween,
@@ -76,11 +82,17 @@ impl VariableKind {
     pub fn is_parameter(&self) -> bool {
         match self {
             Self::Parameter { .. }
+            | Self::MachineNumber(_)
             | Self::ExactBetween
             | Self::Compensation
             | Self::StartPosition => true,
             Self::Time | Self::Input(_) | Self::Output(_) => false,
         }
+    }
+
+    /// Whether it is a number of an axis or machine file.
+    pub fn is_of_file(&self) -> bool {
+        matches!(self, Self::Parameter { .. } | Self::MachineNumber(_))
     }
 
     /// Whether it is a switch: 0 or 1.
@@ -91,35 +103,29 @@ impl VariableKind {
 
 /// An input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Input {
-    /// Reference of the position, m or rad.
-    Position,
-    /// Of the speed, m/s or rad/s.
-    Velocity,
-    /// Of the acceleration, m/s² or rad/s².
-    Acceleration,
-    /// Torque (N·m) or force (N) of the motor; in a closed loop, what is added to the controller's.
-    Motor,
-    /// Current of a plant's motor, A, whose torque is added.
-    Current,
-    /// Force on the load, N or N·m, positive against positive motion.
-    Load,
-}
-
-/// How an output is read.
-#[derive(Clone, Copy, Debug)]
-pub struct Output(pub(crate) Source);
-
-impl Output {
-    /// Whether it changes with control cycles alone, and not in between.
-    pub fn is_sampled(&self) -> bool {
-        matches!(self.0, Source::Drive(_))
-    }
+pub struct Input {
+    /// Of which axis of the unit, from 0.
+    pub axis: usize,
+    /// What of it.
+    pub quantity: Quantity,
 }
 
 /// All variables of a unit, by their value references.
 #[derive(Clone, Debug)]
 pub struct Variables(Vec<Variable>);
+
+/// An axis file of a unit.
+#[derive(Clone, Copy)]
+pub(crate) struct DriveFile<'a> {
+    /// What stands before the names of its variables.
+    pub prefix: &'a str,
+    /// Which drive of the unit it is, from 0.
+    pub drive: usize,
+    pub axis: &'a Axis,
+    /// Stands for the file in messages.
+    pub name: &'a str,
+    pub text: &'a str,
+}
 
 impl Variables {
     /// The variables of such a unit of an axis, made of its file's text; `name` stands for it in
@@ -128,60 +134,132 @@ impl Variables {
     /// # Errors
     /// [`UnitError::Axis`], [`UnitError::Text`] if the text is no axis file.
     pub fn of(kind: UnitKind, axis: &Axis, name: &str, text: &str) -> Result<Self, UnitError> {
-        let mut all = Self(Vec::new());
-        all.push("time", "", "s", VariableKind::Time, None);
-        for (name, meaning, unit, input, start) in inputs(axis, kind) {
-            all.push(name, meaning, unit, VariableKind::Input(input), Some(start));
-        }
-        for output in outputs(axis, kind) {
-            let kind = VariableKind::Output(Output(output.source));
-            all.push(&output.name, output.meaning, output.unit, kind, None);
-        }
-        let takes = |table: &str| kind != UnitKind::Plant || table != CONTROL;
-        let numbers = parameters(name, text)?;
-        for parameter in numbers.into_iter().filter(|p| takes(&p.table)) {
-            let kind = VariableKind::Parameter {
-                table: parameter.table.clone(),
-                key: parameter.key.clone(),
-            };
-            let name = format!("{}.{}", parameter.table, parameter.key);
-            all.push(&name, &parameter.valid, "", kind, Some(parameter.value));
-            if let Some(last) = all.0.last_mut() {
-                last.measure = UnitDefinition::spelled(parameter.unit);
-                last.limits = parameter.limits;
-            }
-        }
+        let (prefix, drive) = ("", 0);
+        let file = DriveFile {
+            prefix,
+            drive,
+            axis,
+            name,
+            text,
+        };
+        let mut all = Self::begin();
+        all.push_inputs(kind, prefix, 0, axis);
+        all.push_outputs(kind, &file);
+        all.push_parameters(kind, &file)?;
         all.push_own(kind, axis);
         Ok(all)
     }
 
-    /// The unit's own parameters.
+    /// Time alone.
+    pub(crate) fn begin() -> Self {
+        let mut all = Self(Vec::new());
+        all.push("time", "", "s", VariableKind::Time, None);
+        all
+    }
+
+    /// The inputs of an axis of the unit.
+    pub(crate) fn push_inputs(&mut self, kind: UnitKind, prefix: &str, axis: usize, of: &Axis) {
+        for (name, meaning, unit, quantity, start) in inputs(of, kind) {
+            let input = VariableKind::Input(Input { axis, quantity });
+            self.push(
+                &format!("{prefix}{name}"),
+                meaning,
+                unit,
+                input,
+                Some(start),
+            );
+        }
+    }
+
+    /// The outputs of a drive.
+    pub(crate) fn push_outputs(&mut self, kind: UnitKind, file: &DriveFile<'_>) {
+        for column in outputs(file.axis, kind) {
+            let name = format!("{}{}", file.prefix, column.name);
+            self.push_output(
+                &name,
+                column.meaning,
+                column.unit,
+                (column.source, file.drive),
+            );
+        }
+    }
+
+    /// One output, and of what it is.
+    pub(crate) fn push_output(
+        &mut self,
+        name: &str,
+        meaning: &str,
+        unit: &str,
+        (source, of): (Source, usize),
+    ) {
+        let kind = VariableKind::Output(Output { source, of });
+        self.push(name, meaning, unit, kind, None);
+    }
+
+    /// The numbers of an axis file.
+    pub(crate) fn push_parameters(
+        &mut self,
+        kind: UnitKind,
+        file: &DriveFile<'_>,
+    ) -> Result<(), UnitError> {
+        let takes = |table: &str| kind != UnitKind::Plant || table != CONTROL;
+        let numbers = parameters(file.name, file.text)?;
+        for parameter in numbers.into_iter().filter(|p| takes(&p.table)) {
+            let name = format!("{}{}.{}", file.prefix, parameter.table, parameter.key);
+            let (valid, value) = (parameter.valid, parameter.value);
+            let kind = VariableKind::Parameter {
+                drive: file.drive,
+                table: parameter.table,
+                key: parameter.key,
+            };
+            self.push(&name, &valid, "", kind, Some(value));
+            self.measure(parameter.unit, parameter.limits);
+        }
+        Ok(())
+    }
+
+    /// A number of a machine file.
+    pub(crate) fn push_number(&mut self, place: usize, number: &MachineNumber) {
+        let kind = VariableKind::MachineNumber(place);
+        let [least, most] = number.limits;
+        let valid = format!("a number from {least} to {most}");
+        self.push(&number.name, &valid, "", kind, Some(number.value));
+        self.measure(number.unit, Some(number.limits));
+    }
+
+    /// The parameter of what outputs show between two samples.
+    pub(crate) fn push_exact(&mut self) {
+        let own = VariableKind::ExactBetween;
+        self.push(EXACT_BETWEEN, EXACT_MEANING, "", own, Some(0.0));
+        self.limit([0.0, 1.0]);
+    }
+
+    /// Unit as files spell it, and limits, of the last one.
+    fn measure(&mut self, unit: &str, limits: Option<[f64; 2]>) {
+        if let Some(last) = self.0.last_mut() {
+            last.measure = UnitDefinition::spelled(unit);
+            last.limits = limits;
+        }
+    }
+
+    /// The parameters of a unit of one axis.
     fn push_own(&mut self, kind: UnitKind, axis: &Axis) {
         if kind == UnitKind::Compensated {
             let own = VariableKind::Compensation;
             self.push(COMPENSATION, COMPENSATION_MEANING, "", own, Some(1.0));
             self.limit([0.0, 1.0]);
         }
+        if kind != UnitKind::Plant {
+            return self.push_exact();
+        }
         let stroke = &axis.stroke;
-        let (name, meaning, unit, own, start, limits) = match (kind, axis.freedom()) {
-            (UnitKind::ClosedLoop | UnitKind::Compensated, _) => {
-                let own = VariableKind::ExactBetween;
-                (EXACT_BETWEEN, EXACT_MEANING, "", own, 0.0, [0.0, 1.0])
-            }
-            (UnitKind::Plant, freedom) => {
-                let [name, unit] = match freedom {
-                    Freedom::Linear => ["unit.start_position_m", "m"],
-                    Freedom::Rotary => ["unit.start_position_rad", "rad"],
-                };
-                let (own, limits) = (
-                    VariableKind::StartPosition,
-                    [stroke.minimum, stroke.maximum],
-                );
-                (name, START_MEANING, unit, own, stroke.start, limits)
-            }
+        let [name, unit] = match axis.freedom() {
+            Freedom::Linear => ["unit.start_position_m", "m"],
+            Freedom::Rotary => ["unit.start_position_rad", "rad"],
         };
-        self.push(name, meaning, unit, own, Some(start));
-        self.limit(limits);
+        let own = VariableKind::StartPosition;
+        self.push(name, START_MEANING, unit, own, Some(stroke.start));
+        self.limit([stroke.minimum, stroke.maximum]);
     }
 
     /// Limits of the last one.
@@ -238,12 +316,12 @@ impl Variables {
     }
 }
 
-/// Name, meaning, unit, input, start.
-type Line = (&'static str, &'static str, &'static str, Input, f64);
+/// Name, meaning, unit, what of the axis, start.
+type Line = (&'static str, &'static str, &'static str, Quantity, f64);
 
 #[rustfmt::skip]
 fn inputs(axis: &Axis, kind: UnitKind) -> Vec<Line> {
-    use Input::{Acceleration, Current, Load, Motor, Position, Velocity};
+    use Quantity::{Acceleration, Current, Load, Motor, Position, Velocity};
     const LOAD: &str = "on the load from outside, positive against positive motion";
     let at = axis.stroke.start;
     let load = match axis.freedom() {

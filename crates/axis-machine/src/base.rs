@@ -50,6 +50,15 @@ pub(crate) struct BaseState {
 }
 
 impl BaseMode {
+    /// Least and greatest frequency, Hz.
+    pub(crate) const FREQUENCY: [f64; 2] = [0.1, 500.0];
+    /// Of the damping ratio.
+    pub(crate) const DAMPING: [f64; 2] = [0.0, 0.9];
+    /// Of the mass ratio.
+    pub(crate) const MASS_RATIO: [f64; 2] = [0.0, 0.5];
+    /// Of the share at the tool.
+    pub(crate) const AT_TOOL: [f64; 2] = [-10.0, 10.0];
+
     pub(crate) fn check(&self, axis: usize) -> Result<(), MachineError> {
         let within = |what, value: f64, [least, most]: [f64; 2], unit| {
             // False for a NaN too.
@@ -69,25 +78,25 @@ impl BaseMode {
         within(
             "the frequency of the base",
             self.frequency,
-            [0.1, 500.0],
+            Self::FREQUENCY,
             "Hz",
         )?;
         within(
             "the damping ratio of the base",
             self.damping,
-            [0.0, 0.9],
+            Self::DAMPING,
             "",
         )?;
         within(
             "the mass ratio of the base",
             self.mass_ratio,
-            [0.0, 0.5],
+            Self::MASS_RATIO,
             "",
         )?;
         within(
             "the share of the base at the tool",
             self.at_tool,
-            [-10.0, 10.0],
+            Self::AT_TOOL,
             "",
         )
     }

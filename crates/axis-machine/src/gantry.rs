@@ -32,6 +32,13 @@ impl Default for GantryBeam {
 const MOST_PHASE: f64 = 0.5;
 
 impl GantryBeam {
+    /// Greatest stiffness (N/m) and damping (N·s/m) for loads of `masses` (kg) and a control period (s).
+    pub(crate) fn most(masses: [f64; 2], period: f64) -> [f64; 2] {
+        let inverse: f64 = masses.iter().map(|m| 1.0 / m).sum();
+        let stiffness = (MOST_PHASE / period).powi(2) / inverse;
+        [stiffness, MOST_PHASE / (period * inverse)]
+    }
+
     /// Checks it for loads of `masses` (kg) and a control period (s).
     pub(crate) fn check(
         &self,
@@ -48,8 +55,7 @@ impl GantryBeam {
                 valid,
             })
         };
-        let inverse: f64 = masses.iter().map(|m| 1.0 / m).sum();
-        let most = (MOST_PHASE / period).powi(2) / inverse;
+        let [most, most_damping] = Self::most(masses, period);
         // Each false for a NaN too.
         if !(self.stiffness >= 0.0 && self.stiffness <= most) {
             let valid = format!("from 0 to {most:.3e} N/m at this mass and control period");
@@ -60,9 +66,9 @@ impl GantryBeam {
                 valid,
             );
         }
-        let most = MOST_PHASE / (period * inverse);
-        if !(self.damping >= 0.0 && self.damping <= most) {
-            let valid = format!("from 0 to {most:.3e} N·s/m at this mass and control period");
+        if !(self.damping >= 0.0 && self.damping <= most_damping) {
+            let valid =
+                format!("from 0 to {most_damping:.3e} N·s/m at this mass and control period");
             return refuse(
                 "the damping of the beam against skew",
                 self.damping,

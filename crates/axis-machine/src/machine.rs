@@ -127,6 +127,11 @@ impl<const D: usize> CoupledMachine<D> {
         &self.drives
     }
 
+    /// The shortest time of which the control periods of all drives are whole parts, s.
+    pub fn period(&self) -> f64 {
+        self.period
+    }
+
     /// What lies between its axes.
     pub fn coupling(&self) -> &Coupling {
         &self.coupling

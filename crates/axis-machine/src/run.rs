@@ -118,7 +118,7 @@ impl<const D: usize> CoupledMachine<D> {
             for (d, drive) in going.iter_mut().enumerate() {
                 self.go(d, drive, &mut laws[d], &mut state.loops[d])?;
             }
-            self.move_bases(state, &before);
+            self.move_bases(state, &before, self.period);
         }
         Ok(self.lap(first, going, bases))
     }
@@ -157,13 +157,13 @@ impl<const D: usize> CoupledMachine<D> {
         })
     }
 
-    /// Moves the bases by the period in which the speeds of the loads were `before` (m/s) at first.
-    pub(crate) fn move_bases(&self, state: &mut MachineState, before: &[f64; D]) {
+    /// Moves the bases by a time (s) in which the speeds of the loads were `before` (m/s) at first.
+    pub(crate) fn move_bases(&self, state: &mut MachineState, before: &[f64; D], time: f64) {
         let after = self.speeds(state);
         for (axis, base) in self.bases.iter().enumerate() {
             if let Some(base) = base {
-                let acceleration = (after[axis] - before[axis]) / self.period;
-                state.bases[axis] = base.advanced(&state.bases[axis], acceleration, self.period);
+                let acceleration = (after[axis] - before[axis]) / time;
+                state.bases[axis] = base.advanced(&state.bases[axis], acceleration, time);
             }
         }
     }

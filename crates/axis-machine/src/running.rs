@@ -3,8 +3,8 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use axis_sim::{Cycle, RunStopped, Start};
-use compensator::NoCompensation;
+use axis_sim::{Cycle, LoopState, Start};
+use compensator::{Compensator, Correction, Sample};
 use trajectories::Setpoint;
 
 use crate::error::MachineError;
@@ -19,6 +19,25 @@ pub struct AxisGiven {
     pub reference: Setpoint,
     /// Force on its load from outside, N, positive against positive motion; of a beam half of it on each end.
     pub load: f64,
+    /// What is added to the torque that its controller asks of the motor, N·m; of a beam at both of its drives.
+    pub torque: f64,
+}
+
+/// Share of a control period within which a point of time is that of a sample: more than rounding makes of times that are added up.
+const SAME_POINT: f64 = 1e-3;
+
+/// A constant that is added to the controller's command, in the actuator's unit.
+struct Added(f64);
+
+impl Compensator for Added {
+    fn reset(&mut self) {}
+
+    fn correct(&mut self, _: &Sample) -> Correction {
+        Correction {
+            position: 0.0,
+            command: self.0,
+        }
+    }
 }
 
 /// A machine that runs period by period under references and forces that somebody else knows: another program, a controller.
@@ -37,6 +56,8 @@ pub struct RunningMachine<const D: usize> {
     speeds: VecDeque<[f64; D]>,
     cycles: Vec<Cycle>,
     periods: u64,
+    /// Share of the last period that has passed: 1, but between two instants.
+    share: f64,
 }
 
 impl<const D: usize> RunningMachine<D> {
@@ -73,6 +94,7 @@ impl<const D: usize> RunningMachine<D> {
             speeds: VecDeque::from(vec![[0.0; D]; count]),
             cycles: vec![Cycle::default(); machine.drives().len()],
             periods: 0,
+            share: 1.0,
             machine,
             state,
         })
@@ -83,33 +105,58 @@ impl<const D: usize> RunningMachine<D> {
     /// # Errors
     /// [`MachineError::Stopped`] if a drive stops.
     pub fn advance(&mut self, given: &[AxisGiven; D]) -> Result<(), MachineError> {
+        self.go_on(given, 1.0)?;
+        self.periods += 1;
+        Ok(())
+    }
+
+    /// The machine in the period that begins now, after `share` of it (above 0 and up to 1): each drive has begun the control cycles
+    /// that begin before. The run goes on from `self`, not from the result, which may be between two samples.
+    ///
+    /// # Errors
+    /// As [`RunningMachine::advance`].
+    pub fn within(&self, given: &[AxisGiven; D], share: f64) -> Result<Self, MachineError> {
+        let mut there = self.clone();
+        there.share = share;
+        there.go_on(given, share)?;
+        Ok(there)
+    }
+
+    fn go_on(&mut self, given: &[AxisGiven; D], share: f64) -> Result<(), MachineError> {
         let machine = self.machine.clone();
         let before = machine.speeds(&self.state);
         let forces = machine.forces(&self.state);
         for (d, drive) in machine.drives().iter().enumerate() {
-            let AxisGiven { reference, load } = given[drive.axis];
+            let given = &given[drive.axis];
             let ends = machine.drives().iter().filter(|one| one.axis == drive.axis);
-            let load = load / ends.count() as f64;
+            let load = given.load / ends.count() as f64;
             let state = &mut self.state.loops[d];
             state.set_outer_load(load + forces[d].unwrap_or(0.0));
             let reference = Setpoint {
-                position: reference.position + self.offsets[d],
-                ..reference
+                position: given.reference.position + self.offsets[d],
+                ..given.reference
             };
-            for _ in 0..drive.parts {
-                let references = [&reference; 2];
-                let stepped: Result<Cycle, RunStopped> =
-                    (drive.closed_loop).step(state, references, &mut NoCompensation, |_| ());
-                self.cycles[d] = stepped.map_err(|why| MachineError::Stopped {
-                    axis: drive.axis + 1,
-                    why,
-                })?;
+            let references = [&reference; 2];
+            let mut added = Added(given.torque / drive.closed_loop.axis().torque_constant());
+            let stopped = |why| MachineError::Stopped {
+                axis: drive.axis + 1,
+                why,
+            };
+            let cycles = share * drive.parts as f64;
+            let whole = (cycles + SAME_POINT).floor();
+            for _ in 0..whole as u64 {
+                let stepped = (drive.closed_loop).step(state, references, &mut added, |_| ());
+                self.cycles[d] = stepped.map_err(stopped)?;
+            }
+            let part = cycles - whole;
+            if part > SAME_POINT {
+                let within = (drive.closed_loop).within(state, references, &mut added, part);
+                (*state, self.cycles[d]) = within.map_err(stopped)?;
             }
         }
-        machine.move_bases(&mut self.state, &before);
+        machine.move_bases(&mut self.state, &before, share * machine.period);
         self.speeds.pop_front();
         self.speeds.push_back(machine.speeds(&self.state));
-        self.periods += 1;
         Ok(())
     }
 
@@ -143,7 +190,7 @@ impl<const D: usize> RunningMachine<D> {
     pub fn tool(&self) -> [f64; D] {
         let positions = self.positions();
         let travelled = std::array::from_fn(|axis| positions[axis] - self.zeros[axis]);
-        let over = (self.speeds.len() - 1) as f64 * self.machine.period;
+        let over = ((self.speeds.len() - 2) as f64 + self.share) * self.machine.period;
         let (first, last) = (self.speeds[0], self.speeds[self.speeds.len() - 1]);
         let accelerations = std::array::from_fn(|axis| (last[axis] - first[axis]) / over);
         let shift = (self.machine.coupling()).shift(&travelled, &self.zeros, &accelerations);
@@ -154,5 +201,10 @@ impl<const D: usize> RunningMachine<D> {
     /// What each drive did in its last cycle.
     pub fn cycles(&self) -> &[Cycle] {
         &self.cycles
+    }
+
+    /// The closed loop of each drive, as [`RunningMachine::machine`] lists its drives.
+    pub fn loops(&self) -> &[LoopState] {
+        &self.state.loops
     }
 }

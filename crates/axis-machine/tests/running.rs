@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use axis_machine::{AxisGiven, BaseMode, CoupledMachine, GantryBeam, RunningMachine};
 use axis_sim::{ClosedLoop, Start};
-use compensator::NoCompensation;
+use compensator::{Compensator, Correction, NoCompensation, Sample};
 use trajectories::Setpoint;
 
 use crate::coupled::{stage, x_by_y};
@@ -29,6 +29,7 @@ fn given(t: f64) -> [AxisGiven; 2] {
     [0, 1].map(|axis| AxisGiven {
         reference: at(t, axis),
         load: if axis == 1 { 4.0 } else { 0.0 },
+        ..AxisGiven::default()
     })
 }
 
@@ -44,7 +45,9 @@ fn uncoupled_axes_move_as_each_alone() {
         let t = f64::from(k) * running.period();
         running.advance(&given(t)).unwrap();
         for (axis, state) in alone.iter_mut().enumerate() {
-            let AxisGiven { reference, load } = given(t)[axis];
+            let AxisGiven {
+                reference, load, ..
+            } = given(t)[axis];
             state.set_outer_load(load);
             closed_loop
                 .step(state, [&reference; 2], &mut NoCompensation, |_| ())
@@ -172,4 +175,65 @@ fn a_drive_that_stops_is_named() {
         stopped.to_string().starts_with("axis 2 (from 1)"),
         "{stopped}"
     );
+}
+
+/// Within a period each drive is where its own closed loop is there; the torque that is added is the motor's. Drives of 5 and 10 kHz.
+#[test]
+fn within_a_period_each_drive_is_where_its_loop_is() {
+    let slow = stage();
+    let mut fast = slow.clone();
+    fast.period = 0.5 * slow.period;
+    let machine = Arc::new(CoupledMachine::new([&slow, &fast]).unwrap());
+    let mut running = RunningMachine::begin(machine, [0.0; 2]).unwrap();
+    let loops = [&slow, &fast].map(|axis| ClosedLoop::new(axis).unwrap());
+    let mut alone = loops
+        .each_ref()
+        .map(|one| one.start(&Start::at(0.0)).unwrap());
+    let torque = 0.5;
+    let added = [&slow, &fast].map(|axis| torque / axis.torque_constant());
+    for k in 0..300_u32 {
+        let mut now = given(f64::from(k) * running.period());
+        now[0].torque = torque;
+        now[1].torque = torque;
+        for (axis, parts) in [(0, 1_u32), (1, 2)] {
+            let reference = now[axis].reference;
+            let offset = &mut Constant(added[axis]);
+            let (one, state) = (&loops[axis], &mut alone[axis]);
+            state.set_outer_load(now[axis].load);
+            let mut there = state.clone();
+            let mut share = 0.75 * f64::from(parts);
+            while share > 0.999 {
+                one.step(&mut there, [&reference; 2], offset, |_| ())
+                    .unwrap();
+                share -= 1.0;
+            }
+            let (there, cycle) = one.within(&there, [&reference; 2], offset, share).unwrap();
+            let within = running.within(&now, 0.75).unwrap();
+            let shown = within.loops()[axis].plant().seen().position;
+            assert_eq!(shown.to_bits(), there.plant().seen().position.to_bits());
+            assert_eq!(within.cycles()[axis].position, cycle.position);
+            for _ in 0..parts {
+                one.step(state, [&reference; 2], offset, |_| ()).unwrap();
+            }
+        }
+        running.advance(&now).unwrap();
+        for (axis, state) in alone.iter().enumerate() {
+            let position = state.plant().seen().position;
+            assert_eq!(running.positions()[axis].to_bits(), position.to_bits());
+        }
+    }
+}
+
+/// A constant command.
+struct Constant(f64);
+
+impl Compensator for Constant {
+    fn reset(&mut self) {}
+
+    fn correct(&mut self, _: &Sample) -> Correction {
+        Correction {
+            command: self.0,
+            ..Correction::default()
+        }
+    }
 }

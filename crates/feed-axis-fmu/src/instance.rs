@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use axis_fmu::{AXIS_FILE, CORRECTION_FILE, LIBRARY_MARK, Unit, UnitError, UnitKind};
+use axis_fmu::{AXIS_FILE, CORRECTION_FILE, LIBRARY_MARK, MACHINE_FILE, Unit, UnitError, UnitKind};
 use safer_ffi::prelude::*;
 
 use crate::log::Log;
@@ -64,23 +64,29 @@ const NO_STATE: UnitError = UnitError::Null("state");
 
 /// The unit of the resources, if it is the one that the environment means by `token`.
 pub fn unit(token: &str, resources: &str) -> Result<Unit, String> {
+    let path = |file: &str| Path::new(resources).join(file);
     let read = |file: &str| {
-        let file = Path::new(resources).join(file);
+        let file = path(file);
         let name = file.display().to_string();
         match std::fs::read_to_string(&file) {
             Ok(text) => Ok((name, text)),
             Err(error) => Err(format!("{name}: {error}")),
         }
     };
-    let (name, text) = read(AXIS_FILE)?;
     let unit = match UnitKind::of_token(token) {
-        UnitKind::Compensated => Unit::compensated(&name, &text, &read(CORRECTION_FILE)?.1),
-        kind => Unit::of(kind, &name, &text),
+        UnitKind::Machine => Unit::machine(&path(MACHINE_FILE)),
+        kind => {
+            let (name, text) = read(AXIS_FILE)?;
+            match kind {
+                UnitKind::Compensated => Unit::compensated(&name, &text, &read(CORRECTION_FILE)?.1),
+                _ => Unit::of(kind, &name, &text),
+            }
+        }
     };
     let unit = unit.map_err(|error: UnitError| error.to_string())?;
     if token != unit.token() {
         return Err(format!(
-            "the instantiation token (in FMI 2.0 the GUID) is \"{token}\"; valid: \"{}\", of {name} and the {LIBRARY_MARK}",
+            "the instantiation token (in FMI 2.0 the GUID) is \"{token}\"; valid: \"{}\", of {resources} and the {LIBRARY_MARK}",
             unit.token()
         ));
     }

@@ -3,7 +3,7 @@
 //! those for co-simulation of `fmi2Functions.h` (*Functional Mock-up Interface for Model Exchange and
 //! Co-Simulation 2.0.5*).
 //!
-//! One library serves every axis and both versions: it reads `axis.toml` from the unit's resources.
+//! One library serves every axis and both versions: it reads the axis or machine file from the unit's resources.
 //! What FMI offers and this does not (`absent.rs`) returns an error and says so to the logger,
 //! whatever the description has promised; nothing panics across the border.
 //!
@@ -17,6 +17,7 @@
 ))]
 
 mod access;
+mod arrays;
 mod call;
 mod component;
 mod fmi2;

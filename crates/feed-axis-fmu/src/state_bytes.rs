@@ -2,7 +2,7 @@
 
 use axis_fmu::UnitError;
 
-use crate::call::call;
+use crate::arrays::call_with_access;
 use crate::component::ComponentAt;
 use crate::instance::{State, StateAt};
 
@@ -13,11 +13,7 @@ pub fn write(
     state: Option<&State>,
     (to, size): (*mut u8, usize),
 ) -> i32 {
-    let Some(component) = component else {
-        return call(None, name, |_| Ok(()));
-    };
-    let access = component.access;
-    call(Some(&mut component.instance), name, |_| {
+    call_with_access(component, name, |_, access| {
         let bytes = State::bytes(state)?;
         let least = bytes.len();
         if to.is_null() {
@@ -41,11 +37,7 @@ pub fn read(
     (from, size): (*const u8, usize),
     state: StateAt<'_>,
 ) -> i32 {
-    let Some(component) = component else {
-        return call(None, name, |_| Ok(()));
-    };
-    let access = component.access;
-    call(Some(&mut component.instance), name, |instance| {
+    call_with_access(component, name, |instance, access| {
         if from.is_null() {
             return Err(UnitError::Null("bytes"));
         }

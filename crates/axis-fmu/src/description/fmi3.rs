@@ -1,7 +1,5 @@
 //! What is FMI 3.0's alone (FMI 3.0.2, Section 2.4).
 
-use axis_sim::Axis;
-
 use super::{MODEL_IDENTIFIER, naming, numbers, outputs};
 use crate::variables::Variables;
 
@@ -15,7 +13,7 @@ const CAPABILITIES: &str = "needsExecutionTool=\"false\" canBeInstantiatedOnlyOn
      hasEventMode=\"false\" providesEvaluateDiscreteStates=\"false\"";
 
 /// The co-simulation, the variables, the structure.
-pub(super) fn parts(axis: &Axis, variables: &Variables) -> [String; 3] {
+pub(super) fn parts(period: f64, variables: &Variables) -> [String; 3] {
     let list = (variables.iter())
         .map(|variable| format!("<Float64 {}{}/>\n", naming(variable), numbers(variable)))
         .collect();
@@ -31,7 +29,7 @@ pub(super) fn parts(axis: &Axis, variables: &Variables) -> [String; 3] {
     [
         format!(
             "<CoSimulation modelIdentifier=\"{MODEL_IDENTIFIER}\" {CAPABILITIES} fixedInternalStepSize=\"{}\"/>\n",
-            axis.period
+            period
         ),
         list,
         structure,

@@ -5,11 +5,8 @@ mod fmi3;
 
 use std::fmt::Write;
 
-use axis_sim::Axis;
 use trajectories::Motion;
 
-use crate::correction::UnitCorrection;
-use crate::kind::UnitKind;
 use crate::measure::{BASE, UnitDefinition};
 use crate::unit::Unit;
 use crate::variables::{Variable, VariableKind, Variables};
@@ -24,28 +21,18 @@ const CATEGORIES: &str = "<LogCategories>\
 /// The description of a unit. The same inputs give the same text: it has no
 /// date.
 pub fn description(unit: &Unit, version: FmiVersion) -> String {
-    let (axis, variables) = (unit.axis(), unit.variables());
+    let (period, variables) = (unit.period(), unit.variables());
     let [co_simulation, list, structure] = match version {
         FmiVersion::V2 => fmi2::parts(variables),
-        FmiVersion::V3 => fmi3::parts(axis, variables),
+        FmiVersion::V3 => fmi3::parts(period, variables),
     };
     let mut text = format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
          <fmiModelDescription fmiVersion=\"{version}\" modelName=\"{}\" description=\"{}\" \
          {}=\"{}\" generationTool=\"feed-axis {}\" variableNamingConvention=\"structured\">\n\
          {co_simulation}<UnitDefinitions>\n",
-        escaped(&axis.name),
-        escaped(&match unit.kind() {
-            UnitKind::ClosedLoop => axis.description.clone(),
-            UnitKind::Plant => format!("{} ({})", axis.description, unit.kind().words()),
-            UnitKind::Compensated => format!(
-                "{} ({}, {}; references are followed {} control periods late)",
-                axis.description,
-                unit.kind().words(),
-                unit.correction().map_or("", UnitCorrection::strategy),
-                unit.look_ahead(),
-            ),
-        }),
+        escaped(unit.name()),
+        escaped(&unit.description()),
         match version {
             FmiVersion::V2 => "guid",
             FmiVersion::V3 => "instantiationToken",
@@ -62,23 +49,27 @@ pub fn description(unit: &Unit, version: FmiVersion) -> String {
             "<DefaultExperiment startTime=\"0\" stopTime=\"{}\" stepSize=\"{}\"/>\n\
              <ModelVariables>\n{list}</ModelVariables>\n\
              <ModelStructure>\n{structure}</ModelStructure>\n</fmiModelDescription>\n",
-            stop_time(axis, unit.look_ahead()),
-            axis.period
+            stop_time(unit),
+            period
         )
 }
 
-/// When an importer stops that was not told: after the axis' first trajectory, which is followed
-/// `late` cycles late, on a control cycle; after 1 s where it has none.
-fn stop_time(axis: &Axis, late: usize) -> f64 {
-    let first = axis.trajectories.first();
-    let planned = first.and_then(|spec| axis.plan(spec).ok());
-    let duration = planned.map_or(1.0, |motion| motion.duration());
+/// When an importer stops that was not told: after the first trajectory of its axes, the longest of
+/// several, which is followed late by what a correction looks ahead, on a control cycle; after 1 s
+/// where there is none.
+fn stop_time(unit: &Unit) -> f64 {
+    let (period, late) = (unit.period(), unit.look_ahead());
+    let planned = unit.axes().iter().filter_map(|axis| {
+        let motion = axis.plan(axis.trajectories.first()?).ok()?;
+        Some(motion.duration())
+    });
+    let duration = planned.reduce(f64::max).unwrap_or(1.0);
     // Whole periods per second and not seconds per period, so that the number is a short one.
-    let frequency = (1.0 / axis.period).round();
-    let cycles = (duration / axis.period * (1.0 - 1e-9)).ceil().max(1.0) + late as f64;
-    match (frequency * axis.period - 1.0).abs() < 1e-12 {
+    let frequency = (1.0 / period).round();
+    let cycles = (duration / period * (1.0 - 1e-9)).ceil().max(1.0) + late as f64;
+    match (frequency * period - 1.0).abs() < 1e-12 {
         true => cycles / frequency,
-        false => cycles * axis.period,
+        false => cycles * period,
     }
 }
 
@@ -125,6 +116,7 @@ fn naming(variable: &Variable) -> String {
             "causality=\"output\" variability=\"continuous\" initial=\"calculated\""
         }
         VariableKind::Parameter { .. }
+        | VariableKind::MachineNumber(_)
         | VariableKind::ExactBetween
         | VariableKind::Compensation
         | VariableKind::StartPosition => {

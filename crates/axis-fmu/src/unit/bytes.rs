@@ -1,12 +1,13 @@
 //! States as bytes.
 
 use super::Unit;
+use crate::digest::digest;
 use crate::error::UnitError;
-use crate::history::{History, MOST_STEPS, Repeated};
+use crate::history::{History, MOST_STEPS};
 use crate::mode::FmiMode;
 
 /// What such bytes begin with, and the number of their form.
-const MAGIC: u64 = u64::from_le_bytes(*b"fa-fmu-1");
+const MAGIC: u64 = u64::from_le_bytes(*b"fa-fmu-2");
 
 const MODES: [FmiMode; 4] = [
     FmiMode::Instantiated,
@@ -45,7 +46,7 @@ impl Unit {
         }
         words.push(self.history.len() as u64);
         for repeated in self.history.iter() {
-            words.extend(repeated.step);
+            words.extend(repeated.step.iter().copied());
             words.push(repeated.count);
         }
         let mut bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
@@ -83,16 +84,14 @@ impl Unit {
         let mut unit = self.clone();
         (unit.span, unit.begun, unit.run) = (span, begun, None);
         unit.values.clone_from(&unit.begun);
-        unit.history = History::default();
+        unit.history = History::new(self.history.words());
         if runs {
             unit.settled()?;
             unit.mode = FmiMode::Step;
             for _ in 0..reader.word()? {
-                let mut step = [0; Repeated::WORDS];
-                for word in &mut step {
-                    *word = reader.word()?;
-                }
-                unit.again(step, reader.word()?)?;
+                let step = (0..self.history.words()).map(|_| reader.word());
+                let step = step.collect::<Result<Vec<_>, _>>()?;
+                unit.again(&step, reader.word()?)?;
             }
         }
         (unit.values, unit.mode) = (values, mode);
@@ -124,25 +123,4 @@ fn refused<T>(why: &str) -> Result<T, UnitError> {
     Err(UnitError::State(format!(
         "the bytes are not taken, {why}; valid: those of a state of the same unit"
     )))
-}
-
-/// FNV-1a, 64 bits: Fowler, Noll, Vo; IETF draft-eastlake-fnv, Section 2. It finds damage, and
-/// no one who means harm.
-pub(super) fn digest(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::digest;
-
-    /// Test vectors of the draft, Appendix C.
-    #[test]
-    fn digests_are_those_of_the_draft() {
-        assert_eq!(digest(b""), 0xcbf2_9ce4_8422_2325);
-        assert_eq!(digest(b"a"), 0xaf63_dc4c_8601_ec8c);
-        assert_eq!(digest(b"foobar"), 0x8594_4171_f739_67e8);
-    }
 }

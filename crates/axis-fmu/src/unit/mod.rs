@@ -4,19 +4,21 @@ mod bytes;
 mod steps;
 mod values;
 
+use std::path::Path;
 use std::sync::Arc;
 
-use axis_sim::{Axis, ClosedLoop};
+use axis_sim::Axis;
 
 use crate::correction::UnitCorrection;
 use crate::error::UnitError;
 use crate::history::History;
 use crate::kind::UnitKind;
+use crate::machine::Machine;
 use crate::mode::FmiMode;
-use crate::parameters;
-use crate::run::Corrected;
+use crate::one_axis::OneAxis;
 use crate::simulated::Simulated;
-use crate::variables::Variables;
+use crate::subject::{Resource, Subject};
+use crate::variables::{VariableKind, Variables};
 
 /// One instance of a unit. A clone is its saved state.
 #[derive(Clone, Debug)]
@@ -37,10 +39,7 @@ pub struct Unit {
 #[derive(Debug)]
 struct File {
     kind: UnitKind,
-    name: String,
-    text: String,
-    axis: Axis,
-    correction: Option<UnitCorrection>,
+    subject: Box<dyn Subject>,
     variables: Variables,
 }
 
@@ -61,8 +60,12 @@ impl Unit {
     /// [`UnitError::NoCorrection`].
     pub fn of(kind: UnitKind, name: &str, text: &str) -> Result<Self, UnitError> {
         match kind {
-            UnitKind::ClosedLoop | UnitKind::Plant => Self::with(kind, name, text, |_| Ok(None)),
+            UnitKind::ClosedLoop | UnitKind::Plant => {
+                let axis = OneAxis::of(kind, name, text, |_| Ok(None))?;
+                Self::with(kind, Box::new(axis))
+            }
             UnitKind::Compensated => Err(UnitError::NoCorrection),
+            UnitKind::Machine => Err(UnitError::NoMachine),
         }
     }
 
@@ -72,33 +75,35 @@ impl Unit {
     /// # Errors
     /// As [`Unit::of`] and [`UnitCorrection::parse`].
     pub fn compensated(name: &str, text: &str, correction: &str) -> Result<Self, UnitError> {
+        let kind = UnitKind::Compensated;
         let made = |axis: &Axis| UnitCorrection::parse(axis, correction).map(Some);
-        Self::with(UnitKind::Compensated, name, text, made)
+        Self::with(kind, Box::new(OneAxis::of(kind, name, text, made)?))
     }
 
-    fn with(
-        kind: UnitKind,
-        name: &str,
-        text: &str,
-        correction: impl FnOnce(&Axis) -> Result<Option<UnitCorrection>, UnitError>,
-    ) -> Result<Self, UnitError> {
-        let axis = Axis::parse(name, text)?;
-        ClosedLoop::new(&axis)?;
-        let correction = correction(&axis)?;
-        let variables = Variables::of(kind, &axis, name, text)?;
+    /// An instance of the machine of this machine file; the axis files that it names are read, too.
+    ///
+    /// # Errors
+    /// [`UnitError::MachineFile`], [`UnitError::Axis`] for a file that cannot be read or makes no
+    /// machine.
+    pub fn machine(file: &Path) -> Result<Self, UnitError> {
+        Self::with(UnitKind::Machine, Box::new(Machine::read(file)?))
+    }
+
+    fn with(kind: UnitKind, subject: Box<dyn Subject>) -> Result<Self, UnitError> {
+        let variables = subject.variables()?;
+        let inputs = variables.iter();
+        let inputs = inputs.filter(|variable| matches!(variable.kind, VariableKind::Input(_)));
         Ok(Self {
             mode: FmiMode::Instantiated,
             values: variables.starts(),
             run: None,
             begun: variables.starts(),
-            history: History::default(),
+            // The inputs, and the length.
+            history: History::new(inputs.count() + 1),
             span: [0.0, f64::INFINITY],
             file: Arc::new(File {
                 kind,
-                name: name.to_owned(),
-                text: text.to_owned(),
-                axis,
-                correction,
+                subject,
                 variables,
             }),
         })
@@ -106,7 +111,7 @@ impl Unit {
 
     /// The correction of a compensated one.
     pub fn correction(&self) -> Option<&UnitCorrection> {
-        self.file.correction.as_ref()
+        self.file.subject.correction()
     }
 
     /// Control periods by which the axis follows its references late: 0 without a correction.
@@ -124,14 +129,35 @@ impl Unit {
         self.file.kind
     }
 
-    /// The axis file's text.
-    pub(crate) fn text(&self) -> &str {
-        &self.file.text
+    /// The files that it is made of again, as they lie among its resources.
+    pub(crate) fn resources(&self) -> Vec<Resource<'_>> {
+        self.file.subject.resources()
     }
 
-    /// The axis, as the file has it.
-    pub fn axis(&self) -> &Axis {
-        &self.file.axis
+    /// Short name of the axis or machine.
+    pub fn name(&self) -> &str {
+        self.file.subject.name()
+    }
+
+    /// What it is, for people.
+    pub fn description(&self) -> String {
+        self.file.subject.description()
+    }
+
+    /// Fingerprint of the axis, or of the files of a machine.
+    pub fn fingerprint(&self) -> String {
+        self.file.subject.fingerprint()
+    }
+
+    /// The axis of each drive, as its file has it: one, but for a machine.
+    pub fn axes(&self) -> &[Axis] {
+        self.file.subject.axes()
+    }
+
+    /// Control period, s; of a machine the shortest time of which those of all its drives are whole
+    /// parts.
+    pub fn period(&self) -> f64 {
+        self.file.subject.period()
     }
 
     /// Where it is in the calling order.
@@ -142,20 +168,14 @@ impl Unit {
     /// The token that a description and its library must agree in: the axis, the program's version
     /// and the kind.
     pub fn token(&self) -> String {
-        let correction = self.correction().map_or("", UnitCorrection::text);
-        let digest = bytes::digest(correction.as_bytes());
-        format!(
-            "{}-{}{}",
-            self.file.axis.fingerprint,
-            env!("CARGO_PKG_VERSION"),
-            self.file.kind.mark(digest)
-        )
+        let (subject, version) = (&self.file.subject, env!("CARGO_PKG_VERSION"));
+        format!("{}-{version}{}", subject.fingerprint(), subject.mark())
     }
 
     /// Time that it has reached, s.
     pub fn time(&self) -> f64 {
-        let periods = self.run.as_ref().map_or(0.0, Simulated::periods);
-        self.span[0] + periods * self.file.axis.period
+        let periods = self.run.as_ref().map_or(0.0, |run| run.0.periods());
+        self.span[0] + periods * self.period()
     }
 
     /// Begins the initialisation at `start` (s); no step goes beyond `stop` (s), if there is one.
@@ -247,7 +267,7 @@ impl Unit {
         self.values = self.file.variables.starts();
         self.run = None;
         self.begun.clone_from(&self.values);
-        self.history = History::default();
+        self.history = History::new(self.history.words());
         self.span = [0.0, f64::INFINITY];
     }
 
@@ -259,24 +279,11 @@ impl Unit {
     /// The run, begun where it is not: at rest, with the parameters as they are.
     fn settled(&mut self) -> Result<(), UnitError> {
         if self.run.is_none() {
-            let changed = self.changed();
-            let changed_axis;
-            let axis = if changed.is_empty() {
-                &self.file.axis
-            } else {
-                let (name, text) = (&self.file.name, &self.file.text);
-                changed_axis = parameters::with(name, text, changed.into_iter())?;
-                &changed_axis
-            };
-            let correction = self.correction().filter(|_| self.is_compensated());
-            let corrected = Corrected {
-                law: correction.map(UnitCorrection::law),
-                look_ahead: self.look_ahead(),
-            };
-            let run = Simulated::begin(self.file.kind, axis, &self.given(), corrected)?;
+            let (changed, inputs) = (self.changed(), self.inputs());
+            let run = (self.file.subject).begin(&changed, &inputs, self.is_compensated())?;
             self.run = Some(run);
             self.begun.clone_from(&self.values);
-            self.history = History::default();
+            self.history = History::new(self.history.words());
         }
         Ok(())
     }

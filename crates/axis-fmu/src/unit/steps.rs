@@ -2,9 +2,7 @@
 
 use super::Unit;
 use crate::error::UnitError;
-use crate::history::Repeated;
 use crate::mode::FmiMode;
-use crate::run::Given;
 
 /// Share of the control period by which a communication point may be off: what rounding makes
 /// of a time that is added up.
@@ -30,30 +28,32 @@ impl Unit {
     pub fn step(&mut self, point: f64, step: f64) -> Result<f64, UnitError> {
         self.in_mode("a step", &[FmiMode::Step], "after the initialization")?;
         let periods = self.periods(point, step)?;
-        let (given, exact) = (self.given(), self.is_exact());
+        let (given, exact) = (self.inputs(), self.is_exact());
         let Some(run) = &mut self.run else {
             return Err(self.order("a step", "after the initialization"));
         };
-        if let Err(stopped) = run.run_on(periods, &given, exact) {
+        if let Err(stopped) = run.0.run_on(periods, &given, exact) {
             self.mode = FmiMode::Failed;
             return Err(stopped);
         }
-        let [a, b, c, d, e, f] = given.bits();
-        self.history.push([a, b, c, d, e, f, periods.to_bits()], 1);
+        let values = self
+            .input_places()
+            .map(|place| self.values[place].to_bits());
+        let step: Vec<u64> = values.chain([periods.to_bits()]).collect();
+        self.history.push(&step, 1);
         Ok(self.time())
     }
 
     /// Makes steps of a history again.
-    pub(super) fn again(
-        &mut self,
-        step: [u64; Repeated::WORDS],
-        count: u64,
-    ) -> Result<(), UnitError> {
-        let [a, b, c, d, e, f, periods] = step;
-        let (given, periods) = (Given::of_bits([a, b, c, d, e, f]), f64::from_bits(periods));
-        let exact = self.is_exact();
+    pub(super) fn again(&mut self, step: &[u64], count: u64) -> Result<(), UnitError> {
+        let places: Vec<usize> = self.input_places().collect();
+        for (place, bits) in places.into_iter().zip(step) {
+            self.values[place] = f64::from_bits(*bits);
+        }
+        let periods = step.last().copied().map_or(0.0, f64::from_bits);
+        let (given, exact) = (self.inputs(), self.is_exact());
         if let (Some(run), true) = (&mut self.run, periods > 0.0 && periods <= MOST_CYCLES) {
-            (0..count).try_for_each(|_| run.run_on(periods, &given, exact))?;
+            (0..count).try_for_each(|_| run.0.run_on(periods, &given, exact))?;
         }
         self.history.push(step, count);
         Ok(())
@@ -61,7 +61,7 @@ impl Unit {
 
     /// Control periods of a communication step.
     fn periods(&self, point: f64, step: f64) -> Result<f64, UnitError> {
-        let (now, period) = (self.time(), self.file.axis.period);
+        let (now, period) = (self.time(), self.period());
         let refused = |what, value, valid| Err(UnitError::Time { what, value, valid });
         let is_here = (point - now).abs() <= POINT_TOLERANCE * period;
         if !is_here {

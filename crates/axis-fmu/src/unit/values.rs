@@ -1,12 +1,11 @@
 //! Values of variables.
 
-use trajectories::Setpoint;
-
 use super::Unit;
 use crate::error::UnitError;
+use crate::given::{Inputs, Quantity};
 use crate::mode::FmiMode;
-use crate::run::Given;
-use crate::variables::{Input, VariableKind};
+use crate::parameters::{Changed, Place};
+use crate::variables::VariableKind;
 
 impl Unit {
     /// The value of a variable, in its unit. In initialisation mode outputs are those of the axis
@@ -18,9 +17,10 @@ impl Unit {
     pub fn get(&mut self, reference: u32) -> Result<f64, UnitError> {
         let output = match &self.file.variables.get(reference)?.kind {
             VariableKind::Time => return Ok(self.time()),
-            VariableKind::Output(output) => output.0,
+            VariableKind::Output(output) => *output,
             VariableKind::Input(_)
             | VariableKind::Parameter { .. }
+            | VariableKind::MachineNumber(_)
             | VariableKind::ExactBetween
             | VariableKind::Compensation
             | VariableKind::StartPosition => {
@@ -35,7 +35,7 @@ impl Unit {
             self.settled()?;
         }
         match &self.run {
-            Some(run) => Ok(run.read(output)),
+            Some(run) => Ok(run.0.read(&output)),
             None => Err(self.order("reading an output", "from the initialization on")),
         }
     }
@@ -76,6 +76,7 @@ impl Unit {
                 return Err(refused(&format!("{value} is neither; valid: 0 or 1")));
             }
             VariableKind::Parameter { .. }
+            | VariableKind::MachineNumber(_)
             | VariableKind::ExactBetween
             | VariableKind::Compensation
             | VariableKind::StartPosition
@@ -108,40 +109,47 @@ impl Unit {
         all.any(|(variable, value)| is_it(&variable.kind) && *value != 0.0)
     }
 
-    /// The inputs as the loop takes them.
-    pub(super) fn given(&self) -> Given {
-        let of = |is_it: &dyn Fn(&VariableKind) -> bool| {
-            let mut all = self.file.variables.iter().zip(&self.values);
-            let found = all.find(|(variable, _)| is_it(&variable.kind));
-            found.map(|(_, value)| *value)
-        };
-        let input = |input: Input| {
-            let is_it = |kind: &VariableKind| matches!(kind, VariableKind::Input(i) if *i == input);
-            of(&is_it).unwrap_or(0.0)
-        };
-        let start = of(&|kind| matches!(kind, VariableKind::StartPosition));
-        Given {
-            reference: Setpoint {
-                position: start.unwrap_or_else(|| input(Input::Position)),
-                velocity: input(Input::Velocity),
-                acceleration: input(Input::Acceleration),
-                jerk: 0.0,
-            },
-            motor: input(Input::Motor),
-            current: input(Input::Current),
-            load: input(Input::Load),
-        }
+    /// Where the inputs are among the values, in their order.
+    pub(super) fn input_places(&self) -> impl Iterator<Item = usize> {
+        let all = self.file.variables.iter().enumerate();
+        all.filter_map(|(place, variable)| match variable.kind {
+            VariableKind::Input(_) => Some(place),
+            _ => None,
+        })
     }
 
-    /// The parameters that are not as the file has them: table, key, number.
-    pub(super) fn changed(&self) -> Vec<(&str, &str, f64)> {
-        let all = self.file.variables.iter().zip(&self.values);
-        let changed = all.filter_map(|(variable, value)| match &variable.kind {
-            VariableKind::Parameter { table, key } if variable.start != Some(*value) => {
-                Some((table.as_str(), key.as_str(), *value))
+    /// The inputs as simulations take them.
+    pub(super) fn inputs(&self) -> Inputs {
+        let mut all = Inputs::default();
+        for (variable, value) in self.file.variables.iter().zip(&self.values) {
+            let (axis, quantity) = match variable.kind {
+                VariableKind::Input(input) => (input.axis, input.quantity),
+                VariableKind::StartPosition => (0, Quantity::Position),
+                _ => continue,
+            };
+            if let Some(given) = all.get_mut(axis) {
+                given.set(quantity, *value);
             }
-            _ => None,
+        }
+        all
+    }
+
+    /// The parameters that are not as the files have them.
+    pub(super) fn changed(&self) -> Vec<Changed<'_>> {
+        let all = self.file.variables.iter().zip(&self.values);
+        let changed = all.filter(|(variable, value)| variable.start != Some(**value));
+        let placed = changed.filter_map(|(variable, value)| {
+            let place = match &variable.kind {
+                VariableKind::Parameter { drive, table, key } => Place::Drive {
+                    drive: *drive,
+                    table,
+                    key,
+                },
+                VariableKind::MachineNumber(i) => Place::Machine(*i),
+                _ => return None,
+            };
+            Some((place, *value))
         });
-        changed.collect()
+        placed.collect()
     }
 }

@@ -115,7 +115,7 @@ fn simulated(
 
 /// Gives the unit the set points one by one; what the drive shows of each cycle, by channels.
 fn followed(unit: &mut Unit, rows: &[Setpoint], from: usize, to: usize) -> Vec<Vec<f64>> {
-    let axis = unit.axis().clone();
+    let axis = unit.axes()[0].clone();
     let names: Vec<u32> = (channels(&axis).iter())
         .map(|channel| at(unit, &format!("drive.{}", channel.name(&axis))))
         .collect();
@@ -171,7 +171,7 @@ fn a_unit_is_the_strategy_on_the_closed_loop_to_the_bit() {
     ];
     for (name, strategy) in on_liu.chain(elsewhere) {
         let (mut unit, kind, predictors) = unit(name, strategy);
-        let axis = unit.axis().clone();
+        let axis = unit.axes()[0].clone();
         let motion = Late::of(&axis, CYCLES, unit.look_ahead());
         let mut cycles = simulated(&axis, kind, &predictors, &motion);
         cycles.truncate(CYCLES);
@@ -217,7 +217,7 @@ fn the_plan_sees_the_beginning_of_the_motion() {
 #[test]
 fn a_parameter_changes_the_machine_and_not_what_the_correction_assumes() {
     let (mut unit, kind, predictors) = unit("liu2025.toml", "feedback");
-    let motion = Late::of(unit.axis(), 1500, unit.look_ahead());
+    let motion = Late::of(&unit.axes()[0], 1500, unit.look_ahead());
     set(&mut unit, "drive.table_mass_kg", 150.0);
     begin(&mut unit);
     let file = text("liu2025.toml");
@@ -235,10 +235,10 @@ fn a_parameter_changes_the_machine_and_not_what_the_correction_assumes() {
 #[test]
 fn without_its_correction_a_unit_is_the_plain_loop() {
     let (mut unit, _, predictors) = unit("liu2025.toml", "feedback");
-    let motion = Late::of(unit.axis(), 1000, unit.look_ahead());
+    let motion = Late::of(&unit.axes()[0], 1000, unit.look_ahead());
     set(&mut unit, "unit.compensation", 0.0);
     begin(&mut unit);
-    let axis = unit.axis().clone();
+    let axis = unit.axes()[0].clone();
     let cycles = simulated(&axis, &NONE, &predictors, &motion);
     let seen = followed(&mut unit, &motion.rows, 0, cycles.len());
     assert_same("off", &axis, &seen, &cycles);
@@ -256,8 +256,8 @@ fn states_go_on_to_the_bit() {
         set(&mut one, "unit.exact_between_samples", 1.0);
         let fresh = one.clone();
         begin(&mut one);
-        let period = one.axis().period;
-        let rows = Late::of(one.axis(), 1200, 0).rows;
+        let period = one.axes()[0].period;
+        let rows = Late::of(&one.axes()[0], 1200, 0).rows;
         followed(&mut one, &rows, 0, 500);
         let mut looked_at = one.clone();
         one.step(one.time(), 0.4 * period).unwrap();

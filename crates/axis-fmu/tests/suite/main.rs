@@ -1,6 +1,7 @@
 //! Tests of units.
 
 mod compensated;
+mod machines;
 mod orders;
 mod package;
 mod parameters;

@@ -23,7 +23,7 @@ fn read(bytes: Vec<u8>, path: &str) -> String {
 }
 
 /// What stands for a library of Linux: its header, and the mark.
-fn library() -> Vec<u8> {
+pub fn library() -> Vec<u8> {
     elf(62)
 }
 

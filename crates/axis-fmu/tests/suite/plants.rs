@@ -41,7 +41,7 @@ fn under_the_closed_loops_torque_it_moves_as_there() {
         "screw-datasheet.toml",
     ] {
         let mut unit = plant(name);
-        let axis = unit.axis().clone();
+        let axis = unit.axes()[0].clone();
         let motion = axis.plan(&axis.trajectories[0]).unwrap();
         let closed_loop = ClosedLoop::new(&axis).unwrap();
         let mut state = closed_loop
@@ -89,7 +89,7 @@ fn torque_and_load_balance() {
     for name in ["liu2025.toml", "belt.toml", "linear-motor.toml"] {
         let moved = |torque: f64, load: f64| {
             let mut unit = plant(name);
-            let travel = unit.axis().travel_per_radian();
+            let travel = unit.axes()[0].travel_per_radian();
             let is_force = motor(&unit) == "motor_force_n";
             let force = if is_force { torque / travel } else { torque };
             let (motor, start) = (motor(&unit), output(&mut unit, "machine.position"));
@@ -99,7 +99,7 @@ fn torque_and_load_balance() {
             output(&mut unit, "machine.position") - start
         };
         // More than friction holds.
-        let enough = 4.0 * plant(name).axis().torque_constant();
+        let enough = 4.0 * plant(name).axes()[0].torque_constant();
         let (both, torque, load) = (
             moved(enough, enough),
             moved(enough, 0.0),
@@ -115,7 +115,7 @@ fn torque_and_load_balance() {
 #[test]
 fn a_current_is_its_torque() {
     let [mut by_torque, mut by_current] = [(); 2].map(|()| plant("liu2025.toml"));
-    let constant = by_torque.axis().torque_constant();
+    let constant = by_torque.axes()[0].torque_constant();
     set(&mut by_torque, "motor_torque_n_m", 3.0 * constant);
     set(&mut by_current, "motor_iq_a", 3.0);
     for unit in [&mut by_torque, &mut by_current] {
@@ -143,7 +143,7 @@ fn a_current_is_its_torque() {
 #[test]
 fn steps_of_any_length_are_made() {
     let mut whole = plant("belt.toml");
-    let period = whole.axis().period;
+    let period = whole.axes()[0].period;
     let end = |unit: &mut Unit, step: f64| {
         set(unit, "motor_torque_n_m", 1.0);
         let mut time = 0.0;

@@ -22,7 +22,7 @@ const FILES: &[&str] = &[
 
 /// Sets the references and makes one control cycle.
 fn follow(unit: &mut Unit, motion: &dyn Motion, k: u32) {
-    let period = unit.axis().period;
+    let period = unit.axes()[0].period;
     let now = motion.at(f64::from(k) * period);
     let inputs = unit
         .variables()
@@ -42,7 +42,7 @@ fn follow(unit: &mut Unit, motion: &dyn Motion, k: u32) {
 fn a_run_is_the_closed_loops_to_the_bit() {
     for name in FILES {
         let mut unit = ready(name);
-        let axis = unit.axis().clone();
+        let axis = unit.axes()[0].clone();
         let motion = axis.plan(&axis.trajectories[0]).unwrap();
         let mut log = Recorder::new(&axis);
         let closed_loop = ClosedLoop::new(&axis).unwrap();
@@ -71,7 +71,7 @@ fn a_run_is_the_closed_loops_to_the_bit() {
 #[test]
 fn the_machine_is_a_cycle_ahead_of_the_drive() {
     let mut unit = ready("liu2025.toml");
-    let axis = unit.axis().clone();
+    let axis = unit.axes()[0].clone();
     let motion = axis.plan(&axis.trajectories[0]).unwrap();
     let mut machine = get(&mut unit, "machine.position_m");
     for k in 0..500 {
@@ -105,8 +105,8 @@ fn long_steps_are_many_short_ones() {
 fn steps_of_any_length_sample_and_hold() {
     for name in FILES {
         let [mut whole, mut parts] = [ready(name), ready(name)];
-        let period = whole.axis().period;
-        let start = whole.axis().stroke.start;
+        let period = whole.axes()[0].period;
+        let start = whole.axes()[0].stroke.start;
         let reference = whole.variables().iter().nth(1).unwrap().name.clone();
         for unit in [&mut whole, &mut parts] {
             set(unit, &reference, start + 1e-4);
@@ -177,7 +177,7 @@ fn the_exact_state_between_samples_is_on_the_motions_curve() {
         set(&mut between, "unit.exact_between_samples", 1.0);
         between.enter_initialization(0.0, None).unwrap();
         between.exit_initialization().unwrap();
-        let axis = samples.axis().clone();
+        let axis = samples.axes()[0].clone();
         let period = axis.period;
         let motion = axis.plan(&axis.trajectories[0]).unwrap();
         let names: Vec<String> = (samples.variables().iter())
@@ -214,9 +214,9 @@ fn the_exact_state_between_samples_is_on_the_motions_curve() {
 /// load, N or N·m.
 fn at_speed(name: &str, output: &str, speed: f64, load: f64) -> f64 {
     let mut unit = ready(name);
-    let period = unit.axis().period;
-    let start = unit.axis().stroke.start;
-    let [position_ref, velocity_ref, load_in] = match unit.axis().freedom() {
+    let period = unit.axes()[0].period;
+    let start = unit.axes()[0].stroke.start;
+    let [position_ref, velocity_ref, load_in] = match unit.axes()[0].freedom() {
         Freedom::Linear => ["position_ref_m", "velocity_ref_m_s", "load_force_n"],
         Freedom::Rotary => ["position_ref_rad", "velocity_ref_rad_s", "load_torque_n_m"],
     };
@@ -306,7 +306,7 @@ fn the_motor_bears_the_load() {
 /// controller has nothing to do.
 #[test]
 fn an_offset_of_the_motor_bears_a_load() {
-    let travel = unit("liu2025.toml").axis().travel_per_radian();
+    let travel = unit("liu2025.toml").axes()[0].travel_per_radian();
     let way = |offset: f64| {
         let mut unit = ready("liu2025.toml");
         set(&mut unit, "load_force_n", 300.0);
@@ -334,7 +334,7 @@ fn an_offset_of_the_motor_bears_a_load() {
 fn a_restored_state_goes_on_to_the_bit() {
     for name in FILES {
         let mut unit = ready(name);
-        let axis = unit.axis().clone();
+        let axis = unit.axes()[0].clone();
         let motion = axis.plan(&axis.trajectories[0]).unwrap();
         for k in 0..200 {
             follow(&mut unit, &motion, k);

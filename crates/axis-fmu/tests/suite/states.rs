@@ -14,7 +14,7 @@ fn shown(unit: &mut Unit) -> Vec<u64> {
 
 /// Steps of mixed lengths under inputs that change, some of them not.
 fn go_on(unit: &mut Unit, from: u32, to: u32) {
-    let period = unit.axis().period;
+    let period = unit.axes()[0].period;
     let inputs: Vec<_> = (unit.variables().iter())
         .filter(|v| matches!(v.kind, VariableKind::Input(_)))
         .map(|v| (v.reference, v.start.unwrap()))

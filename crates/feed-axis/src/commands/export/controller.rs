@@ -35,7 +35,7 @@ pub struct Results {
     /// Axis file of the machine with which the results were made [default: the one that the axis
     /// file names, or the axis itself]
     #[arg(long, value_name = "FILE")]
-    machine: Option<PathBuf>,
+    pub machine: Option<PathBuf>,
     /// Folder with the results of `train` and `identify`, their --out [default: runs/,
     /// then the name of the axis]
     #[arg(long, value_name = "DIR")]

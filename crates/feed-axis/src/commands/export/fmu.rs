@@ -1,4 +1,4 @@
-//! `export fmu`: the axis as a unit that other simulators take up.
+//! `export fmu`: the axis or machine as a unit that other simulators take up.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -12,12 +12,14 @@ use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::Serialize;
 
 use super::controller::Results;
-use crate::context::{read_axis, read_text};
+use crate::context::{DEFAULT_AXIS, read_axis, read_text};
+use crate::exit::wrong_use;
 use crate::output::{print, write_whole};
 use crate::strategy_name::strategy_name_of;
 
 /// Options of `export fmu`.
 #[derive(Args)]
+#[command(mut_arg("machine", |machine| machine.help(MACHINE).conflicts_with("plant")))]
 pub struct Options {
     #[command(flatten)]
     results: Results,
@@ -41,6 +43,10 @@ pub struct Options {
     libraries: Vec<PathBuf>,
 }
 
+/// What `--machine` is here.
+const MACHINE: &str = "Machine file of two or three axes on one path: the unit is all of them, and what lies between them. \
+     With --strategy: axis file of the machine with which the results were made";
+
 /// Versions, as they are asked for.
 #[derive(Clone, Copy, ValueEnum)]
 enum Fmi {
@@ -56,7 +62,7 @@ enum Fmi {
 #[derive(Serialize)]
 struct Exported<'a> {
     axis: &'a str,
-    axis_fingerprint: &'a str,
+    axis_fingerprint: String,
     fmi_version: &'static str,
     interface: &'static str,
     kind: &'static str,
@@ -100,18 +106,13 @@ impl fmt::Display for Exported<'_> {
 
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
-    // A file that is no axis is shown with the line at fault.
-    let file = &options.results.axis;
-    read_axis(file)?;
-    let text = read_text(file)?;
-    let name = file.display().to_string();
     let version = match options.fmi {
         Fmi::Two => FmiVersion::V2,
         Fmi::Three => FmiVersion::V3,
     };
     // First, so that what is wrong with the axis is told before what is missing beside it.
+    let (name, unit) = unit(options)?;
     let failed = || format!("no unit of {name}");
-    let unit = unit(options, &name, &text).wrap_err_with(failed)?;
     let files = libraries(options)?;
     let contents = files.iter().map(|file| {
         let read = std::fs::read(file).into_diagnostic();
@@ -136,26 +137,51 @@ pub fn command(options: &Options) -> Result<()> {
     print(
         "export-fmu",
         &Exported {
-            axis: &unit.axis().name,
-            axis_fingerprint: &unit.axis().fingerprint,
+            axis: unit.name(),
+            axis_fingerprint: unit.fingerprint(),
             fmi_version: version.number(),
             interface: "co-simulation",
             kind: unit.kind().words(),
             strategy: options.strategy.map(|strategy| strategy.name),
             look_ahead_cycles: unit.look_ahead(),
             platforms,
-            step_s: unit.axis().period,
+            step_s: unit.period(),
             inputs: count(|kind| matches!(kind, VariableKind::Input(_))),
             outputs: count(|kind| matches!(kind, VariableKind::Output(_))),
-            parameters: count(|kind| matches!(kind, VariableKind::Parameter { .. })),
+            parameters: count(VariableKind::is_of_file),
             bytes: bytes.len(),
             out: &options.out,
         },
     )
 }
 
-/// The unit that is asked for.
-fn unit(options: &Options, name: &str, text: &str) -> Result<Unit> {
+/// The unit that is asked for, and the name of its file.
+fn unit(options: &Options) -> Result<(String, Unit)> {
+    let (axis, machine) = (&options.results.axis, &options.results.machine);
+    if let (Some(machine), None) = (machine, options.strategy) {
+        if axis != Path::new(DEFAULT_AXIS) {
+            return Err(wrong_use(format!(
+                "--axis {} and --machine {}: a machine file names its axes; valid: --machine alone, or --strategy with both",
+                axis.display(),
+                machine.display()
+            )));
+        }
+        let unit = Unit::machine(machine).into_diagnostic();
+        let name = machine.display().to_string();
+        return Ok((
+            name.clone(),
+            unit.wrap_err_with(|| format!("no unit of {name}"))?,
+        ));
+    }
+    // A file that is no axis is shown with the line at fault.
+    read_axis(axis)?;
+    let (name, text) = (axis.display().to_string(), read_text(axis)?);
+    let unit = of_axis(options, &name, &text).wrap_err_with(|| format!("no unit of {name}"))?;
+    Ok((name, unit))
+}
+
+/// The same of an axis.
+fn of_axis(options: &Options, name: &str, text: &str) -> Result<Unit> {
     if let Some(strategy) = options.strategy {
         let predictors = options.results.predictors(strategy)?;
         let correction = UnitCorrection::of(&predictors, strategy.name).into_diagnostic()?;

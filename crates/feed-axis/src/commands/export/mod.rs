@@ -23,7 +23,7 @@ pub enum Export {
     /// Write the part of the correction that a drive or CNC can take, as constants and tables
     /// (docs/drive-terms.md)
     Drive(drive::Options),
-    /// Write the axis as an FMI co-simulation unit, 3.0 or 2.0, for other simulators (docs/fmu.md)
+    /// Write the axis or a machine as an FMI co-simulation unit, 3.0 or 2.0, for other simulators (docs/fmu.md)
     Fmu(fmu::Options),
 }
 
