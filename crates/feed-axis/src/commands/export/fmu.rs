@@ -13,6 +13,7 @@ use serde::Serialize;
 
 use super::controller::Results;
 use crate::context::{read_axis, read_text};
+use crate::out_file::{Force, spare};
 use crate::output::{print, write_whole};
 use crate::strategy_name::strategy_name_of;
 
@@ -24,6 +25,8 @@ pub struct Options {
     /// The unit's file
     #[arg(long, value_name = "FILE.fmu")]
     out: PathBuf,
+    #[command(flatten)]
+    force: Force,
     /// Version of FMI: most programs import 2.0, fewer 3.0
     #[arg(long, value_name = "VERSION", default_value = "3")]
     fmi: Fmi,
@@ -100,6 +103,7 @@ impl fmt::Display for Exported<'_> {
 
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
+    spare(&options.out, options.force.force)?;
     // A file that is no axis is shown with the line at fault.
     let file = &options.results.axis;
     read_axis(file)?;
