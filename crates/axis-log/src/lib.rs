@@ -141,6 +141,7 @@ mod write;
 pub use channel::Channel;
 pub use columns::{ColumnSummary, FileSummary, columns};
 pub use csv_in::{read_csv, read_csv_from};
+pub use encoding::{read_text, text_of};
 pub use error::{CsvError, CsvProblem, LogError};
 pub use import::{AxisProposal, MappingProposal, ProposedColumn, propose};
 pub use log::{Log, TIME_CHANNEL};

@@ -289,6 +289,48 @@ fn steps_ramps_and_pulse_trains_are_no_outliers() {
     }
 }
 
+/// Pulses of a command are meant, and so is what answers them; a pulse that no command explains is an outlier.
+#[test]
+fn pulses_of_a_command_and_their_answers_stay() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log.csv");
+    let mut noise = noise(3);
+    let mut text = "t_s,iq_ref_a,iq_a\n".to_owned();
+    for k in 0..3000_u32 {
+        // One sample high every 50, and its answer two samples later; by itself one at sample 1540.
+        let pulse = |k: u32| if k % 50 == 20 { 4.0 } else { 0.0 };
+        let answer = if k < 2 { 0.0 } else { 0.8 * pulse(k - 2) };
+        let glitch = if k == 1540 { 4.0 } else { 0.0 };
+        let [a, b] = [0.0, 0.0].map(|_: f64| 1e-2 * noise());
+        text += &format!(
+            "{},{},{}\n",
+            f64::from(k) * 1e-3,
+            pulse(k) + a,
+            answer + glitch + b
+        );
+    }
+    std::fs::write(&path, text).unwrap();
+    let taken_out = |exact: &[&str]| {
+        let options = Options {
+            exact,
+            ..Options::default()
+        };
+        let prepared = prepare(&[&path], &Mapping::default(), &[], options).unwrap();
+        let of = |name: &str| {
+            prepared
+                .log
+                .missing(name)
+                .iter()
+                .map(|r| r.len())
+                .sum::<usize>()
+        };
+        [of("iq_ref_a"), of("iq_a")]
+    };
+    assert_eq!(taken_out(&["iq_ref_a"]), [0, 1]);
+    // Where nobody says that it is a command, its pulses look like outliers.
+    assert_eq!(taken_out(&[]), [60, 61]);
+}
+
 #[test]
 fn units_are_exact_and_wrong_ones_are_refused() {
     let scale = |channel: &str, unit: &str, counts: Option<f64>, factor: Option<f64>| {

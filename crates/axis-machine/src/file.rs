@@ -243,10 +243,11 @@ impl MachineFile {
     /// [`MachineFileError`]: file, place and what would be valid.
     pub fn read(path: &Path) -> Result<Self, MachineFileError> {
         let file = path.to_owned();
-        let content = std::fs::read_to_string(path).map_err(|source| MachineFileError::Unread {
-            file: file.clone(),
-            source,
-        })?;
+        let content =
+            axis_log::read_text(path, None).map_err(|source| MachineFileError::Unread {
+                file: file.clone(),
+                source,
+            })?;
         let text = MachineText::parse(path, &content)?;
         let folder = path.parent().unwrap_or(Path::new("."));
         let read = |name: &PathBuf| Axis::read(&folder.join(name)).map_err(Box::new);

@@ -18,6 +18,31 @@ fn axis(name: &str) -> Axis {
     Axis::read(&folder.join(name)).unwrap()
 }
 
+/// A feed-forward that a file has to six digits, as `tune` writes it, lacks nothing; one that is a thousandth too low does.
+#[test]
+fn rounding_of_the_file_is_no_term_to_add() {
+    let mut axis = axis("liu2025.toml");
+    let to_add = |axis: &Axis| {
+        let list = terms(axis, &of_axis(axis).unwrap());
+        let of = |name: &str| list.iter().find(|term| term.name == name).unwrap().value;
+        [
+            of("acceleration_feedforward"),
+            of("acceleration_feedforward_to_add"),
+        ]
+    };
+    let [total, _] = to_add(&axis);
+    let rounded: f64 = format!("{total:.5e}").parse().unwrap();
+    assert_ne!(rounded, total);
+    let mut fed = |by: f64| {
+        axis.control
+            .change(|values| values.set("acceleration_feedforward", by))
+            .unwrap();
+        to_add(&axis)[1]
+    };
+    assert_eq!(fed(rounded), 0.0);
+    assert!((fed(0.999 * total) / (1e-3 * total) - 1.0).abs() < 1e-6);
+}
+
 /// From the numbers of the file: screw and mass, couplings, nut, friction.
 #[test]
 fn terms_of_the_papers_axis_by_hand() {
@@ -36,7 +61,7 @@ fn terms_of_the_papers_axis_by_hand() {
     let lag = (1e-4 + screw) / 2800.0 + screw / 2800.0 + density * (length * x - x * x / 2.0) / g;
     let wind_up = 515.0 * per_force + lag;
     let expected = [
-        ("travel_per_radian", r, 10.0),
+        ("travel_per_motor_angle", r, 10.0),
         ("torque_constant", 1.641, 1.641),
         ("inertia_total", total, 1e4 * total),
         ("inertia_rotating", rotating, 1e4 * rotating),
@@ -74,7 +99,7 @@ fn terms_of_the_papers_axis_by_hand() {
 fn terms_of_motors_that_turn_and_of_those_that_do_not() {
     let r = 2.5e-3 / TAU;
     let emps = [
-        ("travel_per_radian", r, "m/rad", 2.5, "mm/rev"),
+        ("travel_per_motor_angle", r, "m/rad", 2.5, "mm/rev"),
         (
             "torque_constant",
             35.15065188 * r,
@@ -98,7 +123,7 @@ fn terms_of_motors_that_turn_and_of_those_that_do_not() {
         ),
     ];
     let linear = [
-        ("travel_per_radian", 1.0, "m/m", 1.0, "1"),
+        ("travel_per_motor_angle", 1.0, "m/m", 1.0, "1"),
         ("torque_constant", 93.0, "N/A", 93.0, "N/A"),
         ("inertia_total", 40.0, "kg", 40.0, "kg"),
         (

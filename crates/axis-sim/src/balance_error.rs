@@ -7,9 +7,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum BalanceError {
     /// Nothing that says how the axis moved.
-    #[error(
-        "no channel shows the motion: a torque balance needs one of {needed}; the log has {available}"
-    )]
+    #[error("no channel shows the motion; valid: one of {needed}; the log has {available}")]
     NoMotion {
         /// Channels of which one would do.
         needed: String,
@@ -18,7 +16,7 @@ pub enum BalanceError {
     },
     /// Nothing that says what moved it.
     #[error(
-        "no channel shows the motor's torque: a torque balance of an actuator \"{actuator}\" needs one of {needed}; the log has {available}"
+        "no channel shows the motor's torque; valid, of an actuator \"{actuator}\": one of {needed}; the log has {available}"
     )]
     NoTorque {
         /// Kind of the actuator.

@@ -1,6 +1,6 @@
 //! The channels of logs: one table.
 
-use ChannelPart::{Given, Made, Sensed, Shown};
+use ChannelPart::{Commanded, Given, Made, Sensed, Shown};
 
 use axis_log::{Log, LogError};
 
@@ -34,8 +34,10 @@ pub enum ChannelPart {
     Sensed,
     /// Compared; made by the controller from what it was shown.
     Made,
-    /// Neither.
+    /// Neither; measured.
     Shown,
+    /// Neither; a command.
+    Commanded,
 }
 
 impl LogChannel {
@@ -95,7 +97,7 @@ pub const CHANNELS: &[LogChannel] = &[
     load(["position_m", "m"], ["position_rad", "rad"], Sensed, |c| c.measured.position),
     same(["motor_angle_rad", "rad"], has_motor_encoder, Sensed, |c| c.measured.motor_angle),
     same(["motor_speed_rad_s", "rad/s"], has_motor_encoder, Shown, |c| c.measured.motor_speed),
-    same(["speed_ref_rad_s", "rad/s"], has_motor_encoder, Shown, |c| c.command.speed_ref),
+    same(["speed_ref_rad_s", "rad/s"], has_motor_encoder, Commanded, |c| c.command.speed_ref),
     same(["iq_ref_a", "A"], has_currents, Made, |c| c.command.effort),
     same(["iq_a", "A"], has_currents, Sensed, |c| c.measured.current.q),
     same(["id_a", "A"], has_currents, Shown, |c| c.measured.current.d),
@@ -104,8 +106,8 @@ pub const CHANNELS: &[LogChannel] = &[
     same(["torque_ref_n_m", "N·m"], |a| a.actuator.effort() == Effort::Torque, Made, |c| c.command.effort),
     same(["force_ref_n", "N"], |a| a.actuator.effort() == Effort::Force, Made, |c| c.command.effort),
     same(["drive_command_v", "V"], |a| a.actuator.effort() == Effort::Voltage, Made, |c| c.command.effort),
-    load(["correction_m", "m"], ["correction_rad", "rad"], Shown, |c| c.correction.position),
-    same(["iq_feedforward_a", "A"], has_currents, Shown, |c| c.correction.command),
+    load(["correction_m", "m"], ["correction_rad", "rad"], Commanded, |c| c.correction.position),
+    same(["iq_feedforward_a", "A"], has_currents, Commanded, |c| c.correction.command),
 ];
 
 /// Channels of what an excitation added to the command, by the unit of that; a log has one of them where
@@ -134,6 +136,19 @@ pub fn excitation_in(log: &Log) -> Option<&[f64]> {
 
 /// Channels that a log may have beside those of a simulation and those that show a torque.
 const OF_LOGS: [&str; 2] = ["velocity_m_s", "velocity_rad_s"];
+
+/// Names of all channels that are commands and not measured: references, what a controller asks for, what is added. Nothing in
+/// them is an outlier.
+pub fn commanded_channels() -> impl Iterator<Item = &'static str> {
+    let commands = CHANNELS
+        .iter()
+        .filter(|c| matches!(c.part, Given | Made | Commanded));
+    let names = commands.flat_map(|c| match c.linear == c.rotary {
+        true => vec![c.linear[0]],
+        false => vec![c.linear[0], c.rotary[0]],
+    });
+    names.chain(EXCITATIONS.iter().map(|(_, [name, _])| *name))
+}
 
 /// Names of all channels that mean something to the programs that read logs.
 pub fn known_channels() -> impl Iterator<Item = &'static str> {

@@ -98,6 +98,7 @@ mod balance_error;
 mod channels;
 mod closed_loop;
 pub mod control;
+mod control_difference;
 mod cycle;
 mod data_sheets;
 mod effect_forces;
@@ -132,10 +133,11 @@ pub use balance::{
     Balance, BalanceError, BalanceNoise, BalanceQuality, CutoffReason, TRANSMISSION_ERROR,
 };
 pub use channels::{
-    CHANNELS, ChannelPart, EXCITATIONS, LogChannel, channels, excitation_channel, excitation_in,
-    known_channels, position_in, reference_in,
+    CHANNELS, ChannelPart, EXCITATIONS, LogChannel, channels, commanded_channels,
+    excitation_channel, excitation_in, known_channels, position_in, reference_in,
 };
 pub use closed_loop::{ClosedLoop, LoopState};
+pub use control_difference::{ControlDifference, control_differences};
 pub use cycle::{Command, Cycle, Measured, Outcome, RunStopped, Stop, StopReason};
 pub use effect_forces::EffectForces;
 pub use error::SetupError;

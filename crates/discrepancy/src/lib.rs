@@ -60,7 +60,7 @@ pub use judge::{
     DriveFunction, EffectFound, EffortCost, FigureLogs, FormFound, FrictionCurve, Gaps, Level,
     Likeness, NextExperiment, Overlay, ParameterFound, Proposal, REMEDIES, ReadUnit, Recalibrated,
     RefusedEffects, Remedy, RemedyFound, ReplacedEffect, Shown, Size, TrackingCost, Unknown,
-    Verdict, discovery, judged,
+    Verdict, discovery, judged, said_evidence,
 };
 pub use name::gap::{ChannelGap, Gap, MATERIAL_OF_NOISE};
 pub use name::library::{Library, applicable};

@@ -10,6 +10,7 @@ use crate::law::LoopGains;
 use crate::margins::CutMargins;
 use crate::set::AxisLoops;
 use crate::tune_settings::TuneSettings;
+use crate::tuned_gains::LoopFigures;
 use crate::tuning::{Limiting, MoveCheck, Tuning};
 
 /// Of an axis as its file says, and of what was found for it.
@@ -40,15 +41,20 @@ pub(crate) fn report(
         ));
     }
     let before = file.figures(&file.gains());
+    let after = loops.figures(gains);
     let exceeds = |peak: Option<f64>, limit: f64| peak.is_none_or(|peak| peak > limit);
     let [limit, limit_late] = limits.sensitivity;
     if exceeds(before.sensitivity, limit) || exceeds(before.sensitivity_late, limit_late) {
         let said =
             |peak: Option<f64>| peak.map_or("not stable".to_owned(), |peak| format!("{peak:.3}"));
         notes.push(format!(
-            "the gains of the file do not keep these limits (sensitivity {}, with one more cycle of delay {}): the tuned loop may hold the load less firmly",
+            "the gains of the file do not keep these limits (sensitivity {}, with one more cycle of delay {}){}",
             said(before.sensitivity),
-            said(before.sensitivity_late)
+            said(before.sensitivity_late),
+            match is_softer(&before, &after) {
+                true => ": the tuned loop holds the load less firmly than they do",
+                false => "",
+            }
         ));
     }
     if !settings.set.measured.is_empty() {
@@ -74,7 +80,7 @@ pub(crate) fn report(
         file_gains: file.shown(&file.gains(), fed(axis), None),
         tuned_gains: loops.shown(gains, fed(tuned), found.notch),
         file: before,
-        tuned: loops.figures(gains),
+        tuned: after,
         proven_stable: radii.iter().all(|radius| *radius < 1.0),
         limiting: limiting(loops, gains, limits),
         helps: helps(&found.axis, settings, loops, gains, limits)?,
@@ -82,6 +88,14 @@ pub(crate) fn report(
         evaluations: found.evaluations,
         notes,
     })
+}
+
+/// Whether a compliance that is reported rose, to the three decimals of its ratio.
+fn is_softer(before: &LoopFigures, after: &LoopFigures) -> bool {
+    let rose = |before: f64, after: f64| after / before > 1.0005;
+    let slopes = before.compliance_slope.zip(after.compliance_slope);
+    rose(before.compliance_rms, after.compliance_rms)
+        || slopes.is_some_and(|(before, after)| rose(before, after))
 }
 
 /// The constraints, the nearest first.

@@ -132,6 +132,42 @@ fn an_unstable_start_is_no_obstacle() {
     assert!(found.report.tuned.sensitivity.unwrap() <= 1.6);
     let note = "do not keep these limits (sensitivity not stable,";
     assert!(found.report.notes.iter().any(|said| said.contains(note)));
+    // Gains 50 times too high held the load more firmly, as far as they held it at all.
+    assert!(is_said_softer(&found.report));
+}
+
+fn is_said_softer(found: &Tuning) -> bool {
+    let mut notes = found.notes.iter();
+    notes.any(|said| said.contains("less firmly"))
+}
+
+/// That the load is held less firmly is said where a compliance rose, and nowhere else.
+#[test]
+fn a_softer_loop_is_said_where_it_is_one() {
+    let mut axis = example("linear-motor");
+    let own = axis.control.cascade(1.0, axis.period).unwrap();
+    // A position loop too fast for its slow speed loop: the limits are not kept, and the load is held softly.
+    let slack = CascadeGains {
+        position: 8.0 * own.position,
+        speed: 0.3 * own.speed,
+        speed_integral: 0.1 * own.speed_integral,
+        acceleration_feedforward: None,
+        notch: None,
+    };
+    let values = axis
+        .control
+        .retuned(axis.control.values(), &slack, 1.0)
+        .unwrap();
+    axis.control.change(|own| *own = values).unwrap();
+    let report = Tuning::of(&axis, &TuneSettings::default()).unwrap().report;
+    assert!(
+        report.notes.iter().any(|said| said.contains("do not keep")),
+        "{:?}",
+        report.notes
+    );
+    assert!(report.tuned.compliance_rms < report.file.compliance_rms);
+    assert!(report.tuned.compliance_slope < report.file.compliance_slope);
+    assert!(!is_said_softer(&report), "{:?}", report.notes);
 }
 
 #[test]

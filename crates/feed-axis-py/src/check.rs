@@ -61,10 +61,8 @@ impl PyAxis {
         let mut duty = AxisDuty::of(&self.axis).map_err(raise::<AxisError>)?;
         for (i, log) in each_log(logs)?.iter().enumerate() {
             let name = format!("logs[{i}]");
-            let needed = [self.axis.position_channel()];
             let renamed = Renamed::default();
-            let (_, log) =
-                whole_log_of(log, &name, &self.axis, &needed, &renamed, &mut Vec::new())?;
+            let (_, log) = whole_log_of(log, &name, &self.axis, &[], &renamed, &mut Vec::new())?;
             duty.add_log(&self.axis, &log).map_err(raise::<LogError>)?;
         }
         Ok(duty)

@@ -123,11 +123,8 @@ pub(crate) fn bytes_of(py: Python<'_>, path: &Path) -> PyResult<Vec<u8>> {
 
 /// The text of a file; one that is no text is refused as `K`.
 pub(crate) fn text_of<K: PyTypeInfo>(py: Python<'_>, path: &Path) -> PyResult<String> {
-    let text = String::from_utf8(bytes_of(py, path)?);
-    text.map_err(|_| {
-        let path = path.display();
-        PyErr::new::<K, _>(format!("{path} is no text in UTF-8; valid: a file in TOML"))
-    })
+    let text = axis_log::text_of(bytes_of(py, path)?);
+    text.map_err(|error| PyErr::new::<K, _>(format!("cannot read {}: {error}", path.display())))
 }
 
 /// A package that only some calls need; without it the error says how it comes.

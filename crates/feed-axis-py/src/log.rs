@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use axis_log::intake::{Options, files, prepare, prepare_channels};
 use axis_log::{Channel, Log, TIME_CHANNEL};
 use axis_sim::mechanism::Freedom;
-use axis_sim::{Axis, CHANNELS, LogChannel};
-use discrepancy::logs::{NamedLog, admit, exact_channels, most_samples, needed_channels};
+use axis_sim::{Axis, CHANNELS, LogChannel, commanded_channels};
+use discrepancy::logs::{NamedLog, admit, most_samples, needed_channels};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyMapping, PyTuple};
@@ -40,7 +40,7 @@ pub(crate) fn whole_log_of(
     renamed: &Renamed,
     notes: &mut Vec<String>,
 ) -> PyResult<(String, Log)> {
-    let exact = exact_channels(axis);
+    let exact: Vec<&str> = commanded_channels().collect();
     let options = Options {
         exact: &exact,
         rate_hz: None,

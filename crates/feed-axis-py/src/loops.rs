@@ -35,7 +35,7 @@ fn set_of(
 
 /// What serde writes, as dicts, lists, numbers and strings.
 pub(crate) fn plain<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
-    let text = serde_json::to_string(value).map_err(raise::<LoopError>)?;
+    let text = feed_axis::json::for_python(value).map_err(raise::<LoopError>)?;
     PyModule::import(py, "json")?.call_method1("loads", (text,))
 }
 

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use axis_pipeline::ErrorUnit;
-use axis_sim::{Axis, AxisFileError, toml_message};
+use axis_sim::{Axis, AxisFileError, control_differences, toml_message};
 use campaign::Inputs;
 use clap::Args;
 use miette::{
@@ -15,7 +15,7 @@ use serde::de::DeserializeOwned;
 
 use crate::exit::{busy, wrong_use};
 use crate::output::ready;
-use crate::set_key::{SetKey, with_keys};
+use crate::set_key::{SetKey, refused, with_keys};
 use crate::{program, shell};
 
 /// The axis file that commands take where none is given: the paper's, in the project's folder.
@@ -102,11 +102,7 @@ impl Common {
 
     /// Reads the axis files and sets the number of threads.
     pub fn open(&self) -> Result<Context> {
-        let mut axis = read_axis(&self.axis)?;
-        if !self.set.is_empty() {
-            let content = with_keys(&read_text(&self.axis)?, &self.set)?;
-            axis = Axis::read_changed(&self.axis, &content)?;
-        }
+        let axis = axis_with(&self.axis, &self.set)?;
         let machine_file = self.machine.clone().or_else(|| {
             let experiment = axis.experiment.as_ref();
             experiment.map(|experiment| experiment.machine.clone())
@@ -160,6 +156,11 @@ impl Context {
         Ok(Claim { _lock: lock })
     }
 
+    /// Keys of the controller that the machine's file has otherwise than the axis file, in words.
+    pub fn other_control(&self) -> Vec<String> {
+        other_control(&self.axis, &self.machine)
+    }
+
     /// Unit of the axis' errors.
     pub fn unit(&self) -> ErrorUnit {
         ErrorUnit::of(&self.axis)
@@ -206,6 +207,38 @@ pub fn read_axis(file: &Path) -> Result<Axis> {
     })
 }
 
+/// Writes a warning for each of [`other_control`].
+pub fn warn_of_control(f: &mut fmt::Formatter<'_>, differences: &[String]) -> fmt::Result {
+    let mut all = differences.iter();
+    all.try_for_each(|difference| writeln!(f, "  warning: {difference}"))
+}
+
+/// The axis of a file, with the keys that `--set` gives another value.
+///
+/// # Errors
+/// As [`read_axis`]; wrong use, if the file is valid and the keys make no axis of it.
+pub fn axis_with(file: &Path, set: &[SetKey]) -> Result<Axis> {
+    let axis = read_axis(file)?;
+    if set.is_empty() {
+        return Ok(axis);
+    }
+    let own = read_text(file)?;
+    let content = with_keys(&own, set)?;
+    Axis::read_changed(file, &content).map_err(|error| match error {
+        // The file by itself is valid, so a line of it is not to blame.
+        AxisFileError::Field {
+            field, what, valid, ..
+        } => refused(set, &own, &field, &what, &valid),
+        _ => error.into(),
+    })
+}
+
+/// Keys of the controller that `machine` has otherwise than `axis`, each a sentence without its end.
+pub fn other_control(axis: &Axis, machine: &Axis) -> Vec<String> {
+    let all = control_differences(axis, machine);
+    all.iter().map(ToString::to_string).collect()
+}
+
 /// The error of an axis file, with what helps.
 #[derive(Debug)]
 struct Helped {
@@ -244,9 +277,9 @@ pub fn from_toml<T: DeserializeOwned>(text: &str) -> Result<T> {
     toml::from_str(text).map_err(|error| miette!("{}", toml_message(text, &error)))
 }
 
-/// Reads a text file, naming it where that fails.
+/// Reads a text file, as [`axis_log::read_text`] does, naming it where that fails.
 pub fn read_text(path: &Path) -> Result<String> {
-    std::fs::read_to_string(path)
+    axis_log::read_text(path, None)
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot read {}", path.display()))
 }

@@ -11,6 +11,7 @@ mod diagnostic;
 pub mod exit;
 pub mod file_set;
 pub mod jobs;
+pub mod json;
 mod out_file;
 pub mod output;
 mod page;

@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
+use clap::Args;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use miette::{Result, miette};
 
@@ -37,8 +38,28 @@ fn named(name: OsString, example: &str) -> Result<PathBuf, String> {
     }
 }
 
-/// Refuses to write over an axis file that is there, which a person may have edited; what a
-/// command computes (logs, pages, results) is replaced.
+/// The option that lets a command write over files that are there.
+#[derive(Args)]
+#[group(id = "force-option")]
+pub struct Force {
+    /// Overwrite existing files
+    #[arg(long)]
+    pub force: bool,
+}
+
+impl Force {
+    /// [`spare`], of files in a folder.
+    ///
+    /// # Errors
+    /// As [`spare`].
+    pub fn spare_in(&self, folder: &Path, names: &[&str]) -> Result<()> {
+        let mut names = names.iter();
+        names.try_for_each(|name| spare(&folder.join(name), self.force))
+    }
+}
+
+/// Refuses to write over a file that is there, of those that people edit or take into other programs: axis files, exports.
+/// Results (logs, pages, JSON, a run's folder) are replaced.
 ///
 /// # Errors
 /// A file of that name, where `force` is not set.

@@ -76,7 +76,8 @@ pub fn print(name: &str, found: &(impl Serialize + Display)) -> Result<()> {
     match Terminal::get().format {
         Format::Text => say(found.to_string().trim_end_matches('\n')),
         Format::Json => {
-            let json = serde_json::to_string_pretty(found).into_diagnostic()?;
+            let json = crate::json::pretty(found).into_diagnostic()?;
+            let json = String::from_utf8(json).into_diagnostic()?;
             lock().parts.push((name.to_owned(), json));
             Ok(())
         }

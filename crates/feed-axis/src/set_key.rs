@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use miette::{IntoDiagnostic, Result};
+use miette::{IntoDiagnostic, Report, Result};
 use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
 
 use crate::exit::wrong_use;
@@ -34,14 +34,17 @@ impl FromStr for SetKey {
 
 impl fmt::Display for SetKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for table in &self.tables {
-            write!(f, "{table}.")?;
-        }
-        write!(f, "{}={}", self.key, self.value)
+        write!(f, "{}={}", self.path(), self.value)
     }
 }
 
 impl SetKey {
+    /// The key with its tables.
+    fn path(&self) -> String {
+        let tables = self.tables.iter().map(|table| format!("{table}."));
+        tables.collect::<String>() + &self.key
+    }
+
     /// What the value is in TOML: a number, a list and so on, or else a text, for which a shell
     /// needs no quotes within quotes.
     fn value(&self) -> Value {
@@ -55,10 +58,7 @@ impl SetKey {
     /// The table of the file that the key is in, made where it is not there; of several of one name, as
     /// `[[trajectory]]`, the one of the number that follows the name, from 1.
     fn table_of<'a>(&self, document: &'a mut DocumentMut) -> Result<&'a mut dyn TableLike> {
-        let wrong = |what: String| {
-            let place = self.tables.join(".");
-            wrong_use(format!("--set {place}.{}: {what}", self.key))
-        };
+        let wrong = |what: String| wrong_use(format!("--set {self}: {what}"));
         let mut table: &mut dyn TableLike = document.as_table_mut();
         let mut names = self.tables.iter();
         while let Some(name) = names.next() {
@@ -110,6 +110,51 @@ pub fn with_keys(content: &str, keys: &[SetKey]) -> Result<String> {
         }
     }
     Ok(document.to_string())
+}
+
+/// What is wrong with the keys that were set, of which the reader refuses `field`: those of them that set it, or something in it
+/// or around it, else all of them, of which one needs another.
+///
+/// `content` is the text of the file: a table that it does not have is named, with those that it has, as the same quantity stands
+/// in other tables in another layout.
+pub fn refused(keys: &[SetKey], content: &str, field: &str, what: &str, valid: &str) -> Report {
+    // The reader counts tables as `trajectory[2]`, the option as `trajectory.2`.
+    let field_as_set = field.replace('[', ".").replace(']', "");
+    let is_in = |inner: &str, outer: &str| {
+        let rest = inner.strip_prefix(outer);
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+    };
+    let meant = |key: &&SetKey| {
+        let path = key.path();
+        is_in(&path, &field_as_set) || is_in(&field_as_set, &path)
+    };
+    let mut blamed: Vec<&SetKey> = keys.iter().filter(meant).collect();
+    if blamed.is_empty() {
+        blamed = keys.iter().collect();
+    }
+    let options: Vec<String> = blamed.iter().map(|key| format!("--set {key}")).collect();
+    let options = options.join(" ");
+    let tables = tables_of(content);
+    let first = |key: &&SetKey| key.tables.first().cloned();
+    let mut strange = blamed.iter().filter_map(first);
+    let strange = strange.find(|table| !tables.contains(table));
+    let strange = strange.map_or(String::new(), |table| {
+        format!(
+            "; the file has no table {table}, its tables are: {}",
+            tables.join(", ")
+        )
+    });
+    wrong_use(format!(
+        "{options}: `{field}` {what}; valid: {valid}{strange}"
+    ))
+}
+
+/// Names of the tables at the head of a text; none of what is no TOML.
+fn tables_of(content: &str) -> Vec<String> {
+    let document: DocumentMut = content.parse().unwrap_or_default();
+    let is_table = |item: &Item| item.is_table_like() || item.is_array_of_tables();
+    let tables = document.iter().filter(|(_, item)| is_table(item));
+    tables.map(|(name, _)| name.to_owned()).collect()
 }
 
 #[cfg(test)]

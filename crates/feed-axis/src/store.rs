@@ -118,7 +118,7 @@ impl<'a> Stage<'a> {
 
     /// Writes a result as JSON.
     pub fn write_json(&self, file: &str, value: &impl Serialize) -> Result<()> {
-        let bytes = serde_json::to_vec_pretty(value).into_diagnostic()?;
+        let bytes = crate::json::pretty(value).into_diagnostic()?;
         write_whole(&self.path(file), &bytes)
     }
 
@@ -157,7 +157,7 @@ impl<'a> Stage<'a> {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             files,
         };
-        serde_json::to_vec_pretty(&manifest).into_diagnostic()
+        crate::json::pretty(&manifest).into_diagnostic()
     }
 
     /// A result of this stage, for a later one: checked against the manifest.

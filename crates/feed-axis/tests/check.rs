@@ -184,6 +184,66 @@ fn a_log_is_a_duty() {
     assert!(succeed(&["check", "--axis", RATED, "--log", &log]).contains("(measured)"));
 }
 
+/// Torque and the motor's angle are a motion and what drives it, as for `identify`; what those refuse is refused here.
+#[test]
+fn a_log_is_read_as_every_command_reads_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let log = at("move.csv");
+    succeed(&[
+        "simulate",
+        "--axis",
+        RATED,
+        "--trajectory",
+        "1",
+        "--log",
+        &log,
+    ]);
+    let read = axis_log::read_log(
+        std::path::Path::new(&log),
+        &axis_log::Mapping::default(),
+        &[],
+    )
+    .unwrap();
+    let of = |name: &str| read.channel(name).unwrap();
+    let constant = feed_axis::context::read_axis(&crate::common::root().join(RATED))
+        .unwrap()
+        .torque_constant();
+    let rows = |every: usize| -> String {
+        let row = |k: usize| {
+            let torque = constant * of("iq_a")[k];
+            format!("{},{},{torque}\n", read.time()[k], of("motor_angle_rad")[k])
+        };
+        let rows: String = (0..read.time().len()).step_by(every).map(row).collect();
+        format!("t_s,motor_angle_rad,torque_n_m\n{rows}")
+    };
+    let (other, slow) = (at("other.csv"), at("slow.csv"));
+    std::fs::write(&other, rows(1)).unwrap();
+    std::fs::write(&slow, rows(1000)).unwrap();
+    let [a, b] = [&log, &other].map(|log| found(&["--axis", RATED, "--log", log]));
+    for name in ["motor_rms_torque", "motor_speed"] {
+        let [a, b] = [&a, &b].map(|found| item(found, name)["value"].as_f64().unwrap());
+        assert!((a / b - 1.0).abs() < 0.02, "{name}: {a} {b}");
+    }
+    let message = refuse(&["check", "--axis", RATED, "--log", &slow]);
+    assert!(message.contains("at least 100 are needed"), "{message}");
+}
+
+/// What has no bound is told from what is not known.
+#[test]
+fn an_unbounded_margin_is_a_number_for_python() {
+    let found = found(&["--axis", RATED, "--trajectory", "1"]);
+    let items = found["items"].as_array().unwrap();
+    let unbounded: Vec<&Value> = items
+        .iter()
+        .filter(|item| item["margin"] == "inf")
+        .collect();
+    assert!(!unbounded.is_empty(), "{found}");
+    assert!(unbounded.iter().all(|item| item["verdict"] == "ok"));
+    let none = items.iter().filter(|item| item["margin"].is_null());
+    assert!(none.clone().all(|item| item["verdict"] == "not known"));
+}
+
 #[test]
 fn what_is_no_duty_is_refused() {
     for (arguments, words) in [

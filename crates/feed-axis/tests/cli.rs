@@ -1,6 +1,6 @@
 //! Help, options of several commands, and what is refused before any work.
 
-use crate::common::{refuse, root, succeed};
+use crate::common::{refuse, root, run, succeed, text};
 use axis_log::{Mapping, read_log};
 
 #[test]
@@ -108,6 +108,48 @@ fn a_bad_axis_file_is_refused_with_its_line() {
     }
     let message = refuse(&["sample", "--axis", "no/such.toml"]);
     assert!(message.contains("no/such.toml"), "{message}");
+}
+
+/// What is wrong with `--set` is said of the option, not of a line that the file does not have.
+#[test]
+fn a_key_set_wrongly_is_named_by_its_option() {
+    let axis = "data/axes/liu2025.toml";
+    let commands: [&[&str]; 5] = [
+        &["analyse"],
+        &["tune", "--out", "/dev/null/no.toml"],
+        &["check", "--trajectory", "1"],
+        &["heat"],
+        &["compensate", "--strategy", "plan", "--moves", "1"],
+    ];
+    for command in commands {
+        let with = |keys: &[&str]| {
+            let keys: Vec<&str> = keys.iter().flat_map(|key| ["--set", key]).collect();
+            let output = run(&[command, &["--axis", axis], &keys].concat());
+            assert_eq!(output.status.code(), Some(2), "{output:?}");
+            text(&output)
+        };
+        let message = with(&["control.frequency_khz=5", "drive.table_mass_kg=-515"]);
+        for part in [
+            "--set drive.table_mass_kg=-515: `drive.",
+            "table_mass_kg` is -515; valid: a number from",
+        ] {
+            assert!(message.contains(part), "{message}");
+        }
+        assert!(!message.contains(".toml:"), "{message}");
+        assert!(!message.contains("frequency_khz=5"), "{message}");
+        let message = with(&["mechanism.table_mass_kg=415"]);
+        assert!(
+            message.contains("--set mechanism.table_mass_kg=415: "),
+            "{message}"
+        );
+        assert!(
+            message.contains("the file has no table mechanism, its tables are: "),
+            "{message}"
+        );
+        let message = with(&["trajectory.2.displacement_mm=far"]);
+        let part = "--set trajectory.2.displacement_mm=far: `trajectory[2].displacement_mm` is a text; valid:";
+        assert!(message.contains(part), "{message}");
+    }
 }
 
 #[test]

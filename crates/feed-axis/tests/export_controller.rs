@@ -137,7 +137,9 @@ fn a_trained_network_leaves_as_c_as_a_component_and_as_onnx() {
 
     // Results of another machine are not taken for these.
     let other = "data/axes/liu2025.toml";
-    let of = ["--quick", "--run", run, "--axis", other, "--out", run];
+    let fresh = folder.path().join("other.onnx");
+    let fresh = fresh.to_str().unwrap();
+    let of = ["--quick", "--run", run, "--axis", other, "--out", fresh];
     let message = refuse(&[&["export", "onnx"][..], &of].concat());
     assert!(message.contains("another axis file"), "{message}");
 }

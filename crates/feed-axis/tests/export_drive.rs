@@ -66,6 +66,51 @@ fn terms_tables_and_loss_are_written_with_their_units() {
     assert!(!out.join("drive-turn.csv").exists());
 }
 
+/// Files that are there may stand in a drive's project already.
+#[test]
+fn an_export_is_not_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |more: &[&str]| -> Vec<String> {
+        let export = [&["export"][..], more].concat();
+        export.iter().map(|word| (*word).to_owned()).collect()
+    };
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let (drive, code, component) = (at("drive"), at("c"), at("hal"));
+    let axis = "data/axes/emps.toml";
+    let plan = [
+        "--axis",
+        "data/axes/belt.toml",
+        "--strategy",
+        "feedback",
+        "--out",
+    ];
+    let commands = [
+        (
+            of(&["drive", "--axis", axis, "--out", &drive]),
+            "drive.json",
+        ),
+        (of(&[&["c"][..], &plan, &[&code]].concat()), "feedback.c"),
+        (
+            of(&[&["linuxcnc"][..], &plan, &[&component]].concat()),
+            "feedback.hal",
+        ),
+    ];
+    for (command, file) in commands {
+        let command: Vec<&str> = command.iter().map(String::as_str).collect();
+        succeed(&command);
+        let path = std::path::Path::new(command.last().unwrap()).join(file);
+        std::fs::write(&path, "my own\n").unwrap();
+        let message = refuse(&command);
+        assert!(
+            message.contains("exists already") && message.contains("--force"),
+            "{message}"
+        );
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "my own\n");
+        succeed(&[&command[..], &["--force"]].concat());
+        assert_ne!(std::fs::read_to_string(&path).unwrap(), "my own\n");
+    }
+}
+
 #[test]
 fn what_cannot_be_done_is_said() {
     let folder = tempfile::tempdir().unwrap();

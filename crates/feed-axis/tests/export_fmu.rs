@@ -47,6 +47,13 @@ fn a_unit_is_written_whole_and_told() {
         "{said}"
     );
     let first = std::fs::read(&out).unwrap();
+    let message = refuse(&export);
+    assert!(
+        message.contains("belt.fmu exists already") && message.contains("--force"),
+        "{message}"
+    );
+    assert_eq!(std::fs::read(&out).unwrap(), first);
+    let export = [&export[..], &["--force"]].concat();
     let told = succeed(&[&export[..], &["--format", "json"]].concat());
     let told: Value = serde_json::from_str(&told).unwrap();
     assert_eq!(
@@ -74,7 +81,8 @@ fn a_unit_takes_the_libraries_of_several_platforms() {
     let (out, linux) = (folder.path().join("belt.fmu"), library(folder.path()));
     let windows = windows_library(folder.path());
     let export = export("data/axes/belt.toml", &out, &linux);
-    let both = [&export[..], &["--library", windows.to_str().unwrap()]].concat();
+    let windows = windows.to_str().unwrap();
+    let both = [&export[..], &["--force", "--library", windows]].concat();
     for (fmi, platforms) in [
         ("3", "x86_64-linux, x86_64-windows"),
         ("2", "linux64, win64"),
@@ -92,6 +100,7 @@ fn a_compensated_unit_is_written_with_its_correction() {
     let folder = tempfile::tempdir().unwrap();
     let (out, library) = (folder.path().join("belt.fmu"), library(folder.path()));
     let export = export("data/axes/belt.toml", &out, &library);
+    let export = [&export[..], &["--force"]].concat();
     let plan = [&export[..], &["--strategy", "plan"]].concat();
     let said = succeed(&plan);
     assert!(

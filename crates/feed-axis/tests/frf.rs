@@ -108,6 +108,53 @@ fn a_hidden_delay_is_measured_and_tuned_with() {
     assert!(blind > 2.0 && seeing < 1.7, "{blind} {seeing}");
 }
 
+/// A log whose command is missing shows the machine's modes, and nothing that the drive has a part in.
+#[test]
+fn a_log_without_a_command_says_what_stands_in_its_place() {
+    let folder = Folder::new();
+    let axis = "data/axes/liu2025.toml";
+    let slide = program("signal = \"prbs\"\namplitude_a = 2\nclock_cycles = 2\nregister = 11");
+    let slide = folder.write("slide.toml", &slide);
+    let log = folder.at("slide.csv");
+    succeed(&[
+        "simulate",
+        "--axis",
+        axis,
+        "--program",
+        &slide,
+        "--noise",
+        "1",
+        "--log",
+        &log,
+    ]);
+    let whole = std::fs::read_to_string(&log).unwrap();
+    let head: Vec<&str> = whole.lines().next().unwrap().split(',').collect();
+    let command = head.iter().position(|name| *name == "iq_ref_a").unwrap();
+    let without = |line: &str| {
+        let mut cells: Vec<&str> = line.split(',').collect();
+        cells.remove(command);
+        cells.join(",") + "\n"
+    };
+    let less: String = whole.lines().map(without).collect();
+    let less = folder.write("less.csv", &less);
+    let said = succeed(&["frf", &less, "--axis", axis]);
+    for part in [
+        "not usable: the log has no command (channel iq_ref_a), and iq_a, which follows it, stands in its place",
+        "mode at 6",
+    ] {
+        assert!(said.contains(part), "no {part:?} in {said}");
+    }
+    for part in ["too many", "against the model", "maximum sensitivity"] {
+        assert!(!said.contains(part), "{part:?} in {said}");
+    }
+    let out = folder.at("tuned.toml");
+    let message = refuse(&["tune", "--axis", axis, "--out", &out, "--frf", &less]);
+    assert!(message.contains("channel iq_ref_a"), "{message}");
+    // With the command each mode stands beside the model's.
+    let said = succeed(&["frf", &log, "--axis", axis]);
+    assert!(said.contains("; the model's: 6"), "{said}");
+}
+
 #[test]
 fn what_cannot_be_measured_is_said() {
     let folder = Folder::new();

@@ -15,6 +15,7 @@ mod identify;
 mod identify_control;
 mod log_convert;
 mod loops;
+mod machine_gains;
 mod outside;
 mod pages;
 mod pipeline;
@@ -27,4 +28,5 @@ mod stopped;
 #[path = "../../controller-export/tests/support/mod.rs"]
 mod support;
 mod terminal;
+mod text_files;
 mod units;

@@ -80,7 +80,7 @@ impl TryFrom<StoredFit> for ModalFit {
         if !(held.is_finite() && held >= 0.0) {
             return refuse("plane: held", held, "0 or above");
         }
-        Ok(Self {
+        let fit = Self {
             modes: stored.modes,
             poles: stored.poles,
             delay_s: stored.delay_s,
@@ -90,6 +90,14 @@ impl TryFrom<StoredFit> for ModalFit {
             band_hz: stored.band_hz,
             plane: stored.plane,
             parameters: stored.parameters,
-        })
+        };
+        match fit.contradiction() {
+            None => Ok(fit),
+            Some(value) => refuse(
+                "a number of modes, poles or delay",
+                value,
+                "that of the parameters",
+            ),
+        }
     }
 }

@@ -36,6 +36,18 @@ fn fits_come_back_and_damaged_ones_do_not_get_in() {
         "two for each real pole",
     );
     is_refused::<ModalFit>(&text, ["\"scale\":", "\"scale\":-"], "above 0 rad/s");
+    // Modes that are not those of the parameters.
+    for key in ["frequency_hz", "damping", "rate", "delay_s"] {
+        let from = format!("\"{key}\":{{\"value\":");
+        let to = format!("{from}1");
+        let message = "valid: that of the parameters";
+        is_refused::<ModalFit>(&text, [&from, &to], message);
+    }
+    is_refused::<ModalFit>(
+        &text,
+        ["\"residue\":[", "\"residue\":[1"],
+        "valid: that of the parameters",
+    );
     comes_back(&Excitation::Multisine(Multisine {
         amplitude: 1.0,
         period: 1000,

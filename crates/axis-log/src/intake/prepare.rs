@@ -15,7 +15,8 @@ use crate::mapping::Mapping;
 /// What is done to files besides reading them.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Options<'a> {
-    /// Channels that are commands and not measured: nothing in them is an outlier.
+    /// Channels that are commands and not measured: nothing in them is an outlier, nor is what others do in the ten samples
+    /// after a pulse in them.
     pub exact: &'a [&'a str],
     /// Rate of the joined log, Hz; `None` for that of the slowest file. Of a single file
     /// it means a resampling.

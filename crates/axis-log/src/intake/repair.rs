@@ -11,12 +11,27 @@ use crate::quality::outliers;
 /// Longest run of missing samples that is taken for a short one.
 pub const SHORT_GAP: usize = 5;
 
-/// Makes isolated outliers holes, but of the channels that are exact.
+/// Samples from a command's pulse within which what is measured may answer it with a pulse of its own: a current
+/// loop's rise, a drive's dead time and a cycle of skew.
+const ANSWER: usize = 10;
+
+/// Makes isolated outliers holes, but of the channels that are exact, and but of what answers a pulse in one of those.
 pub(super) fn take_out(recording: &mut Recording, exact: &[&str], done: &mut Vec<Done>) {
     let time = &recording.time;
-    let inexact = |c: &&mut Channel| !exact.contains(&c.name.as_str());
-    for channel in recording.channels.iter_mut().filter(inexact) {
-        let found = outliers(&channel.samples);
+    let is_exact = |c: &Channel| exact.contains(&c.name.as_str());
+    let commands = recording.channels.iter().filter(|c| is_exact(c));
+    let mut pulses: Vec<usize> = commands
+        .flat_map(|c| outliers(&c.samples))
+        .map(|o| o.index)
+        .collect();
+    pulses.sort_unstable();
+    let answers = |k: usize| {
+        let before = pulses.partition_point(|&p| p < k);
+        before > 0 && k - pulses[before - 1] <= ANSWER
+    };
+    for channel in recording.channels.iter_mut().filter(|c| !is_exact(c)) {
+        let mut found = outliers(&channel.samples);
+        found.retain(|o| !answers(o.index));
         let Some(first) = found.first() else {
             continue;
         };

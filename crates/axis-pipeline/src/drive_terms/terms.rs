@@ -28,7 +28,7 @@ pub fn terms(axis: &Axis, of: &DriveTerms) -> Vec<Term> {
     let ms = (1e3, "ms".to_owned());
     let list: [Line; 24] = [
         (
-            "travel_per_radian",
+            "travel_per_motor_angle",
             r,
             per(u.load, u.angle),
             scaled(u.turn),
@@ -71,7 +71,7 @@ pub fn terms(axis: &Axis, of: &DriveTerms) -> Vec<Term> {
         ),
         (
             "acceleration_feedforward_to_add",
-            of.effort_per_acceleration - of.own_effort_per_acceleration(),
+            lacking(of.effort_per_acceleration, of.own_effort_per_acceleration()),
             feeding.clone(),
             same(&feeding),
             "the part of it that the axis file's drive does not have yet",
@@ -85,7 +85,7 @@ pub fn terms(axis: &Axis, of: &DriveTerms) -> Vec<Term> {
         ),
         (
             "velocity_feedforward_to_add",
-            of.velocity_feedforward - of.own_velocity_feedforward(),
+            lacking(of.velocity_feedforward, of.own_velocity_feedforward()),
             "1".into(),
             share,
             "the part of it that the axis file's drive does not have yet",
@@ -198,4 +198,17 @@ pub fn terms(axis: &Axis, of: &DriveTerms) -> Vec<Term> {
     ];
     let list = list.into_iter().map(Term::from).chain(gains(axis));
     list.filter(|t| t.drive_value.is_finite()).collect()
+}
+
+/// Greatest error of a number that was rounded to six digits, as axis files are written (`SixDigits`), as a share of it: half of
+/// the last digit of 1.00000.
+const ROUNDING: f64 = 5e-6;
+
+/// What `own` lacks of `total`: nothing within the rounding of a file's numbers.
+fn lacking(total: f64, own: f64) -> f64 {
+    let lacking = total - own;
+    match lacking.abs() <= ROUNDING * total.abs() {
+        true => 0.0,
+        false => lacking,
+    }
 }

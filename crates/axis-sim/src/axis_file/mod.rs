@@ -15,7 +15,6 @@ mod slips;
 mod syntax;
 
 use std::cell::RefCell;
-use std::io::Read;
 use std::path::Path;
 use std::rc::Rc;
 
@@ -35,16 +34,7 @@ const MOST_BYTES: u64 = 1 << 20;
 
 /// The text of the file, or why it cannot be had.
 fn content(path: &Path) -> Result<String, AxisFileError> {
-    let read = || {
-        let mut content = String::new();
-        let file = std::fs::File::open(path)?;
-        file.take(MOST_BYTES + 1).read_to_string(&mut content)?;
-        if content.len() as u64 > MOST_BYTES {
-            return Err(std::io::Error::other("it is larger than 1 MiB"));
-        }
-        Ok(content)
-    };
-    read().map_err(|reason| AxisFileError::read(path, reason))
+    axis_log::read_text(path, Some(MOST_BYTES)).map_err(|reason| AxisFileError::read(path, reason))
 }
 
 impl Registry {

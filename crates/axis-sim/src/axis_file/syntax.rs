@@ -1,7 +1,7 @@
 //! What to write instead, where a text is not TOML.
 
 /// What the reader of TOML says of a text that is none, and what to write instead where that is plain: of a
-/// number with a decimal comma or with separators of thousands, and of a text without quotes.
+/// number with a decimal comma or with separators of thousands, of a text without quotes, and of a path with backslashes.
 ///
 /// ```
 /// let text = "mass_kg = 12,5\n";
@@ -24,6 +24,12 @@ pub(super) fn toml_hint(text: &str, offset: usize) -> Option<String> {
     let before = text.get(..offset.min(text.len()))?;
     let line = text.lines().nth(before.matches('\n').count())?;
     let (key, value) = line.split_once('=')?;
+    if let Some(path) = path_in(value) {
+        return Some(format!(
+            "in double quotes a backslash begins an escape; a path stands in single quotes, or has slashes: {} = '{path}'",
+            key.trim()
+        ));
+    }
     let (key, value) = (key.trim(), value.split('#').next()?.trim());
     if let Some(number) = with_point(value) {
         return Some(format!(
@@ -33,6 +39,13 @@ pub(super) fn toml_hint(text: &str, offset: usize) -> Option<String> {
     let is_word = |c: char| c.is_alphanumeric() || "-_. /\\".contains(c);
     let is_text = value.starts_with(char::is_alphabetic) && value.chars().all(is_word);
     is_text.then(|| format!("a text stands in quotes: {key} = \"{value}\""))
+}
+
+/// What stands in double quotes with a backslash in it, from the first of them to the next.
+fn path_in(value: &str) -> Option<&str> {
+    let (_, from) = value.split_once('"')?;
+    let text = from.split('"').next()?;
+    (text.contains('\\') && !text.contains('\'')).then_some(text)
 }
 
 /// A number that was written with a decimal comma, or with points or commas between thousands, as TOML
@@ -85,6 +98,8 @@ mod tests {
             hint("kind = ball-screw"),
             Some("a text stands in quotes: kind = \"ball-screw\"".to_owned())
         );
+        let path = hint(r#"machine = "C:\users\a.toml" # theirs"#).unwrap();
+        assert!(path.ends_with(r"machine = 'C:\users\a.toml'"), "{path}");
         for line in ["x = [1, 2", "x = \"a", "x == 3", "[control", "x = 1.5"] {
             assert_eq!(hint(line), None, "{line}");
         }

@@ -120,6 +120,12 @@ impl ObservedMotion {
         self.scaled(self.nearest().positions(self.period))
     }
 
+    /// Angle of the motor, rad, where a sensor shows it.
+    pub fn motor_positions(&self) -> Option<Vec<f64>> {
+        let motor = self.of_whom(Whose::Motor)?;
+        Some(motor.positions(self.period))
+    }
+
     /// Speed of the load, likewise: as it was sampled, or from sample to sample.
     pub fn speeds(&self) -> Vec<f64> {
         self.scaled(self.nearest().speeds(self.period))

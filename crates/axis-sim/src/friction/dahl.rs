@@ -5,7 +5,7 @@ use std::sync::Arc;
 use lugre::DahlOnset;
 
 use super::contact::of_bristle;
-use super::keys::{STRIBECK_EXPONENT, linear, rotary};
+use super::keys::{CUBIC, EXPONENT_OF_CURVE, QUADRATIC, STRIBECK_EXPONENT, linear, rotary};
 use super::lugre_at_motor::{BREAK_AWAY, COULOMB_LEVEL};
 use super::{Friction, FrictionPlace};
 use crate::freedom::Freedom;
@@ -57,6 +57,9 @@ const KNOWN: &[Known] = &[
     Known::key("stribeck_speed"),
     Known::key("bristle_stiffness"),
     Known::key("viscous"),
+    EXPONENT_OF_CURVE,
+    QUADRATIC,
+    CUBIC,
 ];
 
 fn build(v: &Values, freedom: Freedom) -> Result<Arc<Friction>, PartError> {

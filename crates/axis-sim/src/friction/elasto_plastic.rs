@@ -5,7 +5,7 @@ use std::sync::Arc;
 use lugre::ElastoPlasticOnset;
 
 use super::contact::of_bristle;
-use super::keys::{STRIBECK_EXPONENT, linear, rotary};
+use super::keys::{CUBIC, EXPONENT_OF_CURVE, QUADRATIC, STRIBECK_EXPONENT, linear, rotary};
 use super::lugre_at_motor::{BREAK_AWAY, COULOMB_LEVEL};
 use super::{Friction, FrictionPlace};
 use crate::freedom::Freedom;
@@ -60,6 +60,9 @@ const KNOWN: &[Known] = &[
     Known::key("bristle_stiffness"),
     Known::key("viscous"),
     Known::key("bristle_damping"),
+    EXPONENT_OF_CURVE,
+    QUADRATIC,
+    CUBIC,
 ];
 
 fn build(v: &Values, freedom: Freedom) -> Result<Arc<Friction>, PartError> {

@@ -6,13 +6,21 @@ use crate::part::units::{
     ANGULAR_SPEED, CUBIC_DAMPING, FORCE, LINEAR_DAMPING, QUADRATIC_DAMPING, ROTARY_CUBIC_DAMPING,
     ROTARY_DAMPING, ROTARY_QUADRATIC_DAMPING, SPEED, STIFFNESS, TORQUE, TORSION,
 };
-use crate::part::{Key, PartError, Role, Values, number, quantity};
+use crate::part::{Key, Known, PartError, Role, Values, number, quantity};
 
 /// δ of the Stribeck curve.
 pub(super) const STRIBECK_EXPONENT: Key = number("stribeck_exponent", 0.1, 10.0).or(EXPONENT);
 
 /// δ of the law LuGre.
 const EXPONENT: f64 = 2.0;
+
+/// The exponent as a parameter that may be off: by nothing unless `[tolerances]` names it, as every curve has one, most of them
+/// by default.
+pub(super) const EXPONENT_OF_CURVE: Known = Known::exact("stribeck_exponent");
+
+/// Friction beyond the linear damping, where the file has some.
+pub(super) const QUADRATIC: Known = Known::key("viscous_quadratic");
+pub(super) const CUBIC: Known = Known::key("viscous_cubic");
 
 pub(super) mod linear {
     use super::*;

@@ -6,7 +6,9 @@ use std::sync::Arc;
 use lugre::{LinearOnset, Parameters};
 
 use super::contact::of_bristle;
-use super::keys::{STRIBECK_EXPONENT, is_beyond_lugre, rotary, steady};
+use super::keys::{
+    CUBIC, EXPONENT_OF_CURVE, QUADRATIC, STRIBECK_EXPONENT, is_beyond_lugre, rotary, steady,
+};
 use super::{Friction, FrictionPlace};
 use crate::part::units::{BRISTLE_STIFFNESS, ROTARY_DAMPING, ROTATION, TORQUE};
 use crate::part::{Known, PartError, PartKind, Role, Values, quantity};
@@ -61,6 +63,9 @@ pub(super) const KNOWN: &[Known] = &[
     Known::key("bristle_stiffness"),
     Known::key("viscous"),
     Known::key("bristle_damping"),
+    EXPONENT_OF_CURVE,
+    QUADRATIC,
+    CUBIC,
 ];
 
 pub(super) fn build(v: &Values, at: FrictionPlace) -> Result<Arc<Friction>, PartError> {

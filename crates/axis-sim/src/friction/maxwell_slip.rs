@@ -8,7 +8,7 @@ use std::sync::Arc;
 use lugre::{MaxwellSlip, MaxwellSlipParameters};
 
 use super::contact::{ELEMENTS, with_contact};
-use super::keys::{STRIBECK_EXPONENT, linear, rotary, steady};
+use super::keys::{CUBIC, EXPONENT_OF_CURVE, QUADRATIC, STRIBECK_EXPONENT, linear, rotary, steady};
 use super::lugre_at_motor::{BREAK_AWAY, COULOMB_LEVEL};
 use super::{Friction, FrictionPlace};
 use crate::freedom::Freedom;
@@ -65,6 +65,9 @@ const KNOWN: &[Known] = &[
     Known::key("presliding"),
     Known::key("lag"),
     Known::key("viscous"),
+    EXPONENT_OF_CURVE,
+    QUADRATIC,
+    CUBIC,
 ];
 
 fn build(v: &Values, freedom: Freedom) -> Result<Arc<Friction>, PartError> {

@@ -1,66 +1,44 @@
-//! A duty from a log: position, and the current or the command of torque or force.
+//! A duty from a log: the motion and the motor's torque, as every command reads them.
 
 use axis_log::Log;
+use axis_log::quality::check_sampling;
 
 use super::CheckError;
 use super::duty::{AxisDuty, DutyStretch};
 use crate::axis::Axis;
-use crate::channels::{CHANNELS, position_in};
+use crate::balance::ObservedMotion;
 
 /// Half of the window over which a position is differentiated, s.
 const WINDOW: f64 = 5e-3;
 
-/// Channels that a log must have one of, by what the actuator takes.
-const EFFORTS: [&str; 5] = [
-    "iq_a",
-    "iq_ref_a",
-    "torque_ref_n_m",
-    "force_ref_n",
-    "drive_command_v",
-];
-
 impl AxisDuty {
-    /// Adds a log of the axis: torque from the q current, or from the command of the actuator where it has none; speed from
-    /// the position and acceleration from the motor's angle, or from the position where the log has none, by a parabola
-    /// through 5 ms on both sides.
+    /// Adds a log of the axis, with the channels of motion and torque that an [`ObservedMotion`] takes: speed from the
+    /// load's position and acceleration from the motor's angle, or from the load's position where the log has none, by a
+    /// parabola through 5 ms on both sides.
     ///
     /// # Errors
-    /// [`CheckError`] if the log has no position, or nothing that tells the torque.
+    /// [`CheckError`] if the log is not evenly sampled at 20 Hz to 20 kHz, or short, or nothing tells the motion or the torque.
     pub fn add_log(&mut self, axis: &Axis, log: &Log) -> Result<(), CheckError> {
-        let position = position_in(log)?;
-        let known = |name: &&&str| {
-            log.has(name)
-                && CHANNELS
-                    .iter()
-                    .any(|c| c.linear[0] == **name && (c.of)(axis))
-        };
-        let effort = EFFORTS.iter().find(known).ok_or(CheckError::NoTorque)?;
-        let effort = log.channel(effort)?;
+        let step = check_sampling(log)?.period;
+        let shown = ObservedMotion::of(log, step, axis)?;
         let (constant, radius) = (axis.torque_constant(), axis.travel_per_radian());
-        let angle = "motor_angle_rad";
-        let angle = log.has(angle).then(|| log.channel(angle)).transpose()?;
-        let field = log.has("id_a").then(|| log.channel("id_a")).transpose()?;
-        let time = log.time();
-        let (first, last) = (time.first().copied(), time.last().copied());
-        let span = last.zip(first).map_or(0.0, |(last, first)| last - first);
-        let step = span / (time.len().max(2) - 1) as f64;
-        if step <= 0.0 {
-            return Err(CheckError::NoTime);
-        }
+        let (position, motor) = (shown.positions(), shown.motor_positions());
+        let torque = shown.torque();
+        let field = log.channel("id_a").ok();
         let half = ((WINDOW / step).round() as usize).max(2);
         let has_currents = axis.actuator.has_currents();
-        for k in 0..time.len() - 1 {
-            let [speed, of_load] = derivatives(position, k, half, step);
-            let of_motor = |angle| derivatives(angle, k, half, step)[1] * radius;
+        for k in 0..torque.len() - 1 {
+            let [speed, of_load] = derivatives(&position, k, half, step);
+            let of_motor = |angle: &Vec<f64>| derivatives(angle, k, half, step)[1] * radius;
             let current = match has_currents {
-                true => [field.map_or(0.0, |d| d[k]), effort[k]],
+                true => [field.map_or(0.0, |d| d[k]), torque[k] / constant],
                 false => [0.0; 2],
             };
             self.push(&DutyStretch {
-                duration: time[k + 1] - time[k],
+                duration: step,
                 speed,
-                acceleration: angle.map_or(of_load, of_motor),
-                torque: constant * effort[k],
+                acceleration: motor.as_ref().map_or(of_load, of_motor),
+                torque: torque[k],
                 current,
             })?;
         }

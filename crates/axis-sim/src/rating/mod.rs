@@ -18,11 +18,12 @@ pub use item::{CheckedItem, ItemState, ItemVerdict};
 pub(crate) use keys::{About, MOTOR_CURVE, RATING_KEYS, about, is_linear_unit, rating_keys};
 use sheets::Sheets;
 
-use axis_log::LogError;
+use axis_log::quality::SamplingError;
 use axis_rating::RatingError;
 use thiserror::Error;
 
 use crate::axis::Axis;
+use crate::balance::BalanceError;
 use crate::cycle::RunStopped;
 use crate::error::SetupError;
 use crate::freedom::Freedom;
@@ -41,17 +42,12 @@ pub enum CheckError {
     /// The simulated run did not come to its end.
     #[error(transparent)]
     Stopped(#[from] RunStopped),
-    /// A log lacks a channel.
+    /// A log does not tell the motion or the torque.
     #[error(transparent)]
-    Log(#[from] LogError),
-    /// A log does not tell the torque.
-    #[error(
-        "the log has no channel that tells the motor's torque; valid: iq_a (or iq_ref_a), torque_ref_n_m, force_ref_n or drive_command_v, as the axis' actuator has it"
-    )]
-    NoTorque,
-    /// A log has no two instants.
-    #[error("the log has fewer than two instants; valid: a log over some time")]
-    NoTime,
+    Balance(#[from] BalanceError),
+    /// A log is not evenly sampled.
+    #[error(transparent)]
+    Sampling(#[from] SamplingError),
 }
 
 impl Axis {

@@ -167,3 +167,39 @@ fn viscous_of_third_order() {
     let viscous = |v: f64| linear(v) + 4000.0 * v.powi(3);
     compare_curve(&[("viscous_cubic", 4000.0)], level, viscous);
 }
+
+/// What a curve has beyond LuGre's may be off as its other numbers are: forces by default, the exponent where the file says so.
+#[test]
+fn numbers_beyond_lugre_may_be_off() {
+    let file = std::fs::read_to_string(crate::data("liu2025.toml")).unwrap();
+    let with = |friction: &str, tolerances: &str| {
+        let (before, after) = file.split_once("\n[friction]").unwrap();
+        let (head, after) = after.split_once('\n').unwrap();
+        let text = format!("{before}\n[friction]{head}\n{friction}{after}");
+        Axis::parse("axis.toml", &format!("{text}\n[tolerances]\n{tolerances}")).unwrap()
+    };
+    let beyond = ["stribeck_exponent", "viscous_quadratic", "viscous_cubic"];
+    let known = |axis: &Axis| -> Vec<&str> {
+        let all = axis.known();
+        beyond
+            .into_iter()
+            .filter(|name| all.contains(name))
+            .collect()
+    };
+    assert_eq!(known(&with("", "viscous = \"5 %\"\n")), [""; 0]);
+    let more = "viscous_quadratic_n_m_s2_per_rad2 = 1e-6\nviscous_cubic_n_m_s3_per_rad3 = 1e-9\n";
+    assert_eq!(known(&with(more, "viscous = \"5 %\"\n")), beyond[1..]);
+    let named =
+        "stribeck_exponent = \"20 %\"\nviscous_quadratic = \"unknown\"\nviscous_cubic = \"3 %\"\n";
+    let axis = with(more, named);
+    assert_eq!(known(&axis), beyond);
+    let shares: Vec<f64> = (axis.known().iter())
+        .map(|name| if beyond.contains(name) { 0.1 } else { 0.0 })
+        .collect();
+    let off = axis.with_known(&shares);
+    for name in beyond {
+        let [before, after] =
+            [&axis, &off].map(|axis| axis.friction.values().number(name).unwrap());
+        assert!((after / before - 1.1).abs() < 1e-12, "{name}");
+    }
+}

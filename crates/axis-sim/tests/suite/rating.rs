@@ -358,7 +358,10 @@ fn a_log_tells_what_its_run_tells() {
         .add_log(&axis, &none)
         .unwrap_err()
         .to_string();
-    assert!(message.contains("iq_a (or iq_ref_a)"), "{message}");
+    assert!(
+        message.contains("no channel shows the motor's torque") && message.contains("iq_ref_a"),
+        "{message}"
+    );
 }
 
 /// A file of each kind with the table, as the reader takes it.

@@ -50,7 +50,7 @@ pub use self::remedy::{DriveFunction, REMEDIES, Remedy};
 use self::sentence::sentence;
 pub use self::types::{
     AtScrew, Discovery, EffectFound, FigureLogs, Gaps, NextExperiment, ParameterFound,
-    RefusedEffects, ReplacedEffect, Verdict,
+    RefusedEffects, ReplacedEffect, Verdict, said_evidence,
 };
 pub use self::units::ReadUnit;
 pub use self::unknown::{Curve, Unknown};

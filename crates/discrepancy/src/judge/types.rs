@@ -222,6 +222,38 @@ pub struct NextExperiment {
     pub program: Program,
 }
 
+impl NextExperiment {
+    /// Evidence from which on one effect is preferred to another.
+    const DECIDES: f64 = 25.0;
+
+    /// What a log of it is worth, as a sentence without its end. Evidence of independent logs adds up.
+    #[must_use]
+    pub fn said(&self) -> String {
+        let expected = format!(
+            "The evidence to expect of a log of it is {}, and {} decide",
+            said_evidence(self.by),
+            Self::DECIDES
+        );
+        let needed = (Self::DECIDES / self.by).ceil();
+        match needed {
+            _ if self.by >= Self::DECIDES => format!("{expected}: one log is enough"),
+            // As many as nobody records.
+            _ if needed <= 100.0 => format!("{expected}: {needed} logs are needed"),
+            _ => format!("{expected}: logs of it hardly tell the two apart"),
+        }
+    }
+}
+
+/// Evidence, a fall of −2 log L, rounded to three digits.
+#[must_use]
+pub fn said_evidence(fall: f64) -> String {
+    let rounded: f64 = format!("{fall:.2e}").parse().unwrap_or(fall);
+    match rounded.abs() < 1e5 {
+        true => rounded.to_string(),
+        false => format!("{fall:.2e}"),
+    }
+}
+
 /// Of files from before there was another way.
 fn replayed() -> String {
     "closed-loop-replay".to_owned()
@@ -288,6 +320,35 @@ impl NextExperiment {
             separates: proposal.pair.each_ref().map(|a| a.effect.name.to_owned()),
             by: proposal.separation,
             program: proposal.program.clone(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{NextExperiment, said_evidence};
+
+    #[test]
+    fn evidence_is_rounded_and_weighed() {
+        for (fall, shown) in [
+            (1_795_009.4, "1.80e6"),
+            (71_834.0, "71800"),
+            (26.04, "26"),
+            (0.0, "0"),
+            (-3.456, "-3.46"),
+        ] {
+            assert_eq!(said_evidence(fall), shown);
+        }
+        let text = r#"{"what":"w","separates":["a","b"],"by":0.0,"program":{"start_mm":0,"steps":[{"dwell":{"duration_s":1}}]}}"#;
+        let next: NextExperiment = serde_json::from_str(text).unwrap();
+        let said = |by: f64| NextExperiment { by, ..next.clone() }.said();
+        for (by, end) in [
+            (1_795_009.4, "is 1.80e6, and 25 decide: one log is enough"),
+            (25.0, "one log is enough"),
+            (12.0, "is 12, and 25 decide: 3 logs are needed"),
+            (0.0, "hardly tell the two apart"),
+        ] {
+            assert!(said(by).ends_with(end), "{}", said(by));
         }
     }
 }

@@ -13,5 +13,5 @@ pub use self::admit::{admit, most_samples, needed_channels};
 pub use self::apart::{NamedLog, set_apart};
 pub use self::checks::{check_distinct, check_log};
 pub use self::error::LogSetError;
-pub use self::relations::{cross_checks, exact_channels, relations};
+pub use self::relations::{cross_checks, relations};
 pub use self::start::from_rest;

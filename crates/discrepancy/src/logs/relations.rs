@@ -2,8 +2,8 @@
 
 use axis_log::quality::{CrossCheckVerdict, Finding, Relation, RelationLaw, cross_check};
 use axis_log::{Log, unit_of};
+use axis_sim::Axis;
 use axis_sim::mechanism::Freedom;
-use axis_sim::{Axis, ChannelPart, EXCITATIONS, channels};
 
 use super::error::LogSetError;
 
@@ -52,14 +52,6 @@ pub fn relations(log: &Log, machine: &Axis) -> Vec<Relation> {
         all.extend(torques.map(|c| Relation::new(&c.name, "iq_a", about)));
     }
     all
-}
-
-/// Channels of a log that are commands and not measured, on this axis.
-pub fn exact_channels(machine: &Axis) -> Vec<&'static str> {
-    let given = channels(machine).into_iter();
-    let given = given.filter(|c| c.part == ChannelPart::Given);
-    let excitations = EXCITATIONS.iter().map(|(_, [name, _])| *name);
-    given.map(|c| c.name(machine)).chain(excitations).collect()
 }
 
 /// Refuses a log whose channels say that one of them is in another unit, turned, or from

@@ -241,15 +241,17 @@ impl MeasuredDrive {
             (None, Some(angle)) => MeasuredPlant::speed_of(&at, angle, 0),
             (None, None) => MeasuredPlant::speed_of(&at, &load, 2),
         };
-        let margins = match recorded.is_excited() {
+        let margins = match recorded.is_excited() && recorded.instead.is_none() {
             true => margins(&recorded, averaging, &at, &plant)?,
             false => None,
         };
         let traps = traps::traps(axis, &recorded, &shown, &at, margins.as_ref(), settings)?;
         // What is wrong anyhow is not explained.
-        let is_usable = !traps.iter().any(|trap| trap.refused);
+        let is_usable = refused(&traps) == 0;
         let fitted = fit_settings(settings, plant.band_hz());
-        let fit = match is_usable {
+        // Modes are those of the machine, whatever drives it.
+        let shows_modes = is_usable || recorded.instead.is_some() && refused(&traps) == 1;
+        let fit = match shows_modes {
             true => ModalFit::of(&shown, &fitted).ok(),
             false => None,
         };
@@ -329,6 +331,11 @@ impl LoopSet {
         }
         Ok(self)
     }
+}
+
+/// How many of them forbid to tune on the measurement.
+fn refused(traps: &[Trap]) -> usize {
+    traps.iter().filter(|trap| trap.refused).count()
 }
 
 fn fit_settings(settings: &MeasureSettings, band_hz: Option<[f64; 2]>) -> FitSettings {

@@ -24,6 +24,8 @@ pub(crate) struct Recorded<'a> {
     pub period: f64,
     pub excitation: Option<&'a [f64]>,
     pub command: &'a [f64],
+    /// Channels of the command and of what was taken in its place, where the log has no command.
+    pub instead: Option<[&'static str; 2]>,
     pub command_unit: &'static str,
     /// What the drive really exerts, where the log has it beside the command.
     pub effort: Option<&'a [f64]>,
@@ -70,12 +72,6 @@ impl<'a> Recorded<'a> {
             .into_iter()
             .find(|name| log.has(name))
             .unwrap_or(names[0]);
-        if name != names[0] {
-            notes.push(format!(
-                "the log has no {}, so {name} is taken as the command: the drive's own lag is not in the response",
-                names[0]
-            ));
-        }
         let missing = |error: axis_log::LogError| LoopError::Log(error.to_string());
         let command = log.channel(name).map_err(missing)?;
         let load = position_in(log).map_err(missing)?;
@@ -120,6 +116,7 @@ impl<'a> Recorded<'a> {
             period,
             excitation,
             command,
+            instead: (name != names[0]).then_some([names[0], name]),
             command_unit,
             effort: Some(names[1])
                 .filter(|effort| *effort != name)

@@ -106,7 +106,7 @@ pub(super) fn modes_of(
         let is_seen = square >= SEEN * deviation;
         if !is_seen {
             notes.push(format!(
-                "a pole pair of the fit at {hz:.1} Hz does not stand out of its error at the motor and is left out"
+                "the fit of the responses to the actual current, torque or force, of which the compliance is made and the modes above are not, has a pole pair at {hz:.1} Hz that does not stand out of its error; it is left out of the compliance"
             ));
             continue;
         }

@@ -62,6 +62,14 @@ pub(crate) fn traps(
             ),
         );
     }
+    if let Some([command, instead]) = recorded.instead {
+        add(
+            true,
+            format!(
+                "the log has no command (channel {command}), and {instead}, which follows it, stands in its place: the drive's own lag is not in the response, so neither margins nor a comparison with the model follow from it; valid: a log with {command}"
+            ),
+        );
+    }
     friction(axis, recorded, at, &mut add);
     limits(axis, recorded, &mut add);
     differing(margins, &mut add);

@@ -4,17 +4,17 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use axis_report::engineering;
-use axis_sim::{Axis, SixDigits};
+use axis_sim::SixDigits;
 use clap::Args;
 use drive_loop::{CornerMargins, CutMargins, LoopAnalysis, LoopSet, MASSES};
 use miette::{IntoDiagnostic, Result};
 
-use crate::context::{DEFAULT_AXIS, read_axis, read_text};
+use crate::context::{DEFAULT_AXIS, axis_with};
 use crate::out_file;
 use crate::output::{Worded, print};
 use crate::page::loops as loops_page;
 use crate::page::loops::{compliance_unit, place};
-use crate::set_key::{SetKey, with_keys};
+use crate::set_key::SetKey;
 
 /// Options of `analyse`.
 #[derive(Args)]
@@ -59,18 +59,6 @@ impl Ranges {
             delay,
             ..LoopSet::default()
         }
-    }
-}
-
-/// The axis of a file, with keys set.
-pub fn axis_with(file: &std::path::Path, set: &[SetKey]) -> Result<Axis> {
-    let axis = read_axis(file)?;
-    match set {
-        [] => Ok(axis),
-        set => Ok(Axis::read_changed(
-            file,
-            &with_keys(&read_text(file)?, set)?,
-        )?),
     }
 }
 

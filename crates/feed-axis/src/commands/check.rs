@@ -7,12 +7,11 @@ use axis_sim::{Axis, MoveSpec, SixDigits};
 use clap::Args;
 use miette::{IntoDiagnostic, Result, WrapErr};
 
-use super::analyse::axis_with;
 use super::check_words::{Checked, CheckedRow};
 use super::discover::read_as_one;
 use super::heat_program::repeated;
 use super::motions::listed;
-use crate::context::DEFAULT_AXIS;
+use crate::context::{DEFAULT_AXIS, axis_with};
 use crate::exit::wrong_use;
 use crate::out_file;
 use crate::output::{note, print, write_whole};
@@ -45,7 +44,7 @@ pub struct Options {
     /// Motion program (TOML) that ends where it begins
     #[arg(long, value_name = "FILE", conflicts_with = "log")]
     program: Option<PathBuf>,
-    /// Logs instead of a simulation: position, and the current or the command of torque or force; a log in several
+    /// Logs instead of a simulation: position or motor's angle, and torque, force, current or a command of one; a log in several
     /// files as their paths with + between
     #[arg(long, value_name = "LOG", num_args = 1..)]
     log: Vec<PathBuf>,
@@ -74,7 +73,7 @@ pub fn command(options: &Options) -> Result<()> {
         report: options.report.clone(),
     };
     if let Some(path) = &options.json {
-        let bytes = serde_json::to_vec_pretty(&checked).into_diagnostic()?;
+        let bytes = crate::json::pretty(&checked).into_diagnostic()?;
         write_whole(path, &bytes)?;
     }
     if let Some(path) = &options.report {
@@ -105,7 +104,7 @@ impl Options {
         let mut duty = AxisDuty::of(axis).into_diagnostic()?;
         let mut notes = Vec::new();
         for path in &self.log {
-            let log = read_as_one(path, axis, &[axis.position_channel()], &mut notes)?;
+            let log = read_as_one(path, axis, &[], &mut notes)?;
             if axis.mechanism.has_motor_encoder() && !log.has("motor_angle_rad") {
                 notes.push(format!(
                     "{}: no motor_angle_rad, so greatest forces in the transmission are from the load's position: they \

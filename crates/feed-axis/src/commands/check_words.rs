@@ -30,6 +30,9 @@ pub struct Checked {
     pub report: Option<PathBuf>,
 }
 
+/// What has no bound, for people.
+const UNLIMITED: &str = "unlimited";
+
 /// One item.
 #[derive(Serialize)]
 pub struct CheckedRow {
@@ -39,27 +42,24 @@ pub struct CheckedRow {
     pub title: &'static str,
     /// Unit of value and limit; empty of a plain number.
     pub unit: &'static str,
-    /// None if it is not known, or is not finite.
+    /// None if it is not known; infinite of a life without load, of a winding that no heat leaves.
     pub value: Option<f64>,
     /// None if it is not known.
     pub limit: Option<f64>,
     /// "at most" or "at least"; none without a limit.
     pub bound: Option<&'static str>,
-    /// limit/value, or value/limit of what must be at least the limit: 1 is just kept. None without a limit, or
-    /// if nothing is asked.
+    /// limit/value, or value/limit of what must be at least the limit: 1 is just kept; infinite if nothing is asked. None without
+    /// a limit.
     pub margin: Option<f64>,
     /// "ok", "over" or "not known".
     pub verdict: &'static str,
     /// Keys that would make it known, of `[rating]` if no table is named.
     pub give: Vec<String>,
-    /// Whether the value has no bounds: a life without load, a winding that no heat leaves.
-    pub is_unbounded: bool,
 }
 
 impl CheckedRow {
     /// Of an item.
     pub fn of(item: &CheckedItem) -> Self {
-        let finite = |value: f64| value.is_finite().then_some(value);
         let (raw, unit, give) = match &item.state {
             ItemState::Rated(rating) => (Some(rating.value), rating.unit, Vec::new()),
             ItemState::NotKnown { value, unit, keys } => (*value, *unit, keys.clone()),
@@ -69,25 +69,23 @@ impl CheckedRow {
             name: item.name,
             title: item.title,
             unit,
-            value: raw.and_then(finite),
-            limit: rating.and_then(|rating| finite(rating.limit)),
+            value: raw,
+            limit: rating.map(|rating| rating.limit),
             bound: rating.map(|_| match item.is_at_least() {
                 true => "at least",
                 false => "at most",
             }),
-            margin: rating.and_then(|rating| finite(rating.margin())),
+            margin: rating.map(|rating| rating.margin()),
             verdict: item.verdict().name(),
             give,
-            is_unbounded: raw.is_some_and(f64::is_infinite),
         }
     }
 
     /// The value for people.
     pub fn shown_value(&self) -> String {
-        match (self.value, self.is_unbounded) {
-            (Some(value), _) => self.with_unit(value),
-            (None, true) => "unlimited".to_owned(),
-            (None, false) => "–".to_owned(),
+        match self.value {
+            Some(value) => self.with_unit(value),
+            None => "–".to_owned(),
         }
     }
 
@@ -101,10 +99,10 @@ impl CheckedRow {
 
     /// The margin for people.
     pub fn shown_margin(&self) -> String {
-        match (self.margin, self.verdict) {
-            (Some(margin), _) => rounded(margin),
-            (None, "ok") => "unlimited".to_owned(),
-            _ => "–".to_owned(),
+        match self.margin {
+            Some(margin) if margin.is_infinite() => UNLIMITED.to_owned(),
+            Some(margin) => rounded(margin),
+            None => "–".to_owned(),
         }
     }
 
@@ -125,6 +123,9 @@ impl CheckedRow {
     }
 
     fn with_unit(&self, value: f64) -> String {
+        if value.is_infinite() {
+            return UNLIMITED.to_owned();
+        }
         format!("{} {}", rounded(value), self.unit)
             .trim_end()
             .to_owned()

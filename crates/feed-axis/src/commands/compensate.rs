@@ -12,7 +12,7 @@ use miette::{IntoDiagnostic, Result};
 use serde::Serialize;
 
 use super::{compensate_moves, identify, train, validate};
-use crate::context::{Common, Context};
+use crate::context::{Common, Context, warn_of_control};
 use crate::output::print;
 use crate::progress::bar;
 use crate::store::Stage;
@@ -72,6 +72,7 @@ pub fn run(context: &Context) -> Result<()> {
     };
     let found = Compensated {
         unit,
+        control_differences: context.other_control(),
         runs: runs.iter().map(run).collect(),
         file: stage.path(COMPENSATION),
     };
@@ -83,6 +84,8 @@ pub fn run(context: &Context) -> Result<()> {
 struct Compensated {
     #[serde(skip)]
     unit: ErrorUnit,
+    /// Keys of the controller that the machine's file has otherwise.
+    control_differences: Vec<String>,
     runs: Vec<Run>,
     file: PathBuf,
 }
@@ -103,6 +106,7 @@ impl fmt::Display for Compensated {
             "compensate: tracking error of the machine (simulated), max / mean in {}",
             self.unit
         )?;
+        warn_of_control(f, &self.control_differences)?;
         for kind in STRATEGIES {
             let mut runs = self.runs.iter().filter(|run| run.strategy == kind.name);
             let Some(first) = runs.next() else {

@@ -19,7 +19,7 @@ use super::compensate_warm;
 use super::motions::{program_on, trajectory};
 use super::simulate::{EXACT, NOISE, closed_loop, factor};
 use super::validate;
-use crate::context::Context;
+use crate::context::{Context, warn_of_control};
 use crate::out_file;
 use crate::output::{print, write_whole};
 use crate::progress::bar;
@@ -68,6 +68,8 @@ struct Report<'a> {
     /// What stands for the machine. Simulated, never measured.
     machine: &'a str,
     machine_fingerprint: &'a str,
+    /// Keys of the controller that the machine's file has otherwise.
+    control_differences: Vec<String>,
     strategy: &'a str,
     noise: f64,
     seed: u64,
@@ -163,6 +165,7 @@ pub fn run(context: &Context, options: &Options, kind: &'static StrategyKind) ->
         axis_fingerprint: &context.axis.fingerprint,
         machine: &context.machine.name,
         machine_fingerprint: &context.machine.fingerprint,
+        control_differences: context.other_control(),
         strategy: kind.name,
         noise: options.noise,
         seed: context.seed,
@@ -175,7 +178,7 @@ pub fn run(context: &Context, options: &Options, kind: &'static StrategyKind) ->
     };
     // What was computed before a move stopped is kept.
     if let Some(path) = &options.json {
-        let bytes = serde_json::to_vec_pretty(&report).into_diagnostic()?;
+        let bytes = crate::json::pretty(&report).into_diagnostic()?;
         write_whole(path, &bytes)?;
     }
     let made = Moved {
@@ -251,6 +254,7 @@ impl fmt::Display for Moved<'_> {
             "{} on {} (simulated): tracking error, max / mean in {unit}",
             self.label, report.machine
         )?;
+        warn_of_control(f, &report.control_differences)?;
         writeln!(
             f,
             "        none                 compensated            taken away"

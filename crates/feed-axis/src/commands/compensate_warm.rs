@@ -15,7 +15,7 @@ use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::Serialize;
 
 use super::heat_time::time;
-use crate::context::Context;
+use crate::context::{Context, warn_of_control};
 use crate::exit::wrong_use;
 use crate::output::{print, write_whole};
 use crate::progress::bar;
@@ -112,7 +112,7 @@ impl Run<'_> {
         let [none, cold, warm] = cases;
         let found = self.found(options, &times, [none?, cold?, warm?]);
         if let Some(path) = self.json {
-            let bytes = serde_json::to_vec_pretty(&found).into_diagnostic()?;
+            let bytes = crate::json::pretty(&found).into_diagnostic()?;
             write_whole(path, &bytes)?;
         }
         print("compensate", &found)
@@ -159,6 +159,7 @@ impl Run<'_> {
             label: self.kind.label,
             axis: &self.context.axis.name,
             machine: &self.context.machine.name,
+            control_differences: self.context.other_control(),
             strategy: self.kind.name,
             air_c: options.air,
             noise: self.noise,
@@ -199,6 +200,8 @@ struct Warmed<'a> {
     axis: &'a str,
     /// What stands for the machine. Simulated, never measured.
     machine: &'a str,
+    /// Keys of the controller that the machine's file has otherwise.
+    control_differences: Vec<String>,
     strategy: &'a str,
     air_c: f64,
     noise: f64,
@@ -230,6 +233,7 @@ impl fmt::Display for Warmed<'_> {
             self.machine,
             SixDigits(self.air_c)
         )?;
+        warn_of_control(f, &self.control_differences)?;
         writeln!(
             f,
             "  {:>8} {:>10} {:>12} {:>10}",

@@ -6,9 +6,9 @@ use axis_log::intake::{IntakeError, Options as Intake, files, prepare};
 use axis_log::{Log, Mapping, ReadError, ReadProblem};
 use axis_pipeline::ErrorUnit;
 use axis_sim::effects::Scales;
-use axis_sim::{Axis, known_channels};
+use axis_sim::{Axis, commanded_channels, known_channels};
 use clap::Args;
-use discrepancy::logs::{NamedLog, admit, exact_channels, most_samples, needed_channels};
+use discrepancy::logs::{NamedLog, admit, most_samples, needed_channels};
 use discrepancy::summary::{MeasuredError, rank, tried};
 use discrepancy::{Evidence, Settings};
 use miette::{IntoDiagnostic, Report, Result, WrapErr, miette};
@@ -126,7 +126,7 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
             .collect()
     };
     let mut files = FileSet::new(out, &[DISCOVERY, AXIS, NEXT, REPORT])?;
-    let json = serde_json::to_vec_pretty(discovery).into_diagnostic()?;
+    let json = crate::json::pretty(discovery).into_diagnostic()?;
     files.put(DISCOVERY, &json)?;
     files.put(AXIS, (text + &entries(whole)).as_bytes())?;
     if let Some(next) = &discovery.next_experiment {
@@ -201,7 +201,7 @@ pub(super) fn read_as_one(
     needed: &[&str],
     notes: &mut Vec<String>,
 ) -> Result<Log> {
-    let exact = exact_channels(machine);
+    let exact: Vec<&str> = commanded_channels().collect();
     let options = Intake {
         exact: &exact,
         rate_hz: None,
@@ -289,7 +289,7 @@ fn from_summary(options: &Options, machine: &Axis, table: &Path, out: &Path) -> 
     let progress = bar("effects", tried(axis) as u64);
     let found = rank(axis, &measured, || progress.inc(1)).into_diagnostic()?;
     progress.finish_and_clear();
-    let json = serde_json::to_vec_pretty(&found).into_diagnostic()?;
+    let json = crate::json::pretty(&found).into_diagnostic()?;
     files.put(RANKING, &json)?;
     let html = discovery_page::summary_page(axis, &found)?;
     files.put(RANKING_REPORT, html.as_bytes())?;

@@ -136,11 +136,11 @@ impl Found<'_> {
         {
             writeln!(
                 f,
-                "\nNext experiment: {}. It separates {} from {} (a fall of −2 log L by {:.0} is to be expected; 25 decide):\n  {}",
+                "\nNext experiment: {}. It separates {} from {}. {}:\n  {}",
                 next.what,
                 next.separates[0],
                 next.separates[1],
-                next.by,
+                next.said(),
                 file.display()
             )?;
         }

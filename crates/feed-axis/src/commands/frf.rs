@@ -12,9 +12,8 @@ use miette::{IntoDiagnostic, Result, WrapErr};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::analyse::axis_with;
 use super::discover::read_with;
-use crate::context::DEFAULT_AXIS;
+use crate::context::{DEFAULT_AXIS, axis_with};
 use crate::out_file;
 use crate::output::{Worded, note, print};
 use crate::page::frf as frf_page;
@@ -208,6 +207,18 @@ fn compliance(found: &MeasuredDrive) -> String {
         SixDigits(scale * c.model[0]),
         SixDigits(scale * c.model[1]),
     );
+    let modes: Vec<String> = c
+        .modes
+        .iter()
+        .map(|m| format!("{:.1}", m.frequency_hz))
+        .collect();
+    if !modes.is_empty() {
+        let _ = writeln!(
+            text,
+            "  modes in it, from its own fit: {} Hz",
+            modes.join(", ")
+        );
+    }
     for note in &c.notes {
         let _ = writeln!(text, "  note: {note}");
     }
@@ -249,12 +260,28 @@ fn fitted(found: &MeasuredDrive) -> String {
     let Some(fit) = &found.fit else {
         return text;
     };
+    let compared = found.comparison.as_ref();
     for mode in &fit.modes {
+        let of_model = compared.and_then(|c| {
+            let mut modes = c.modes.iter();
+            let same = modes.find(|m| m.measured_hz == mode.frequency_hz)?;
+            Some(
+                same.model_hz
+                    .map_or("none".to_owned(), |f| format!("{f:.1} Hz")),
+            )
+        });
         let _ = writeln!(
             text,
-            "  mode at {} Hz, damping {} %",
+            "  mode at {} Hz, damping {} %{}",
             pair(mode.frequency_hz, 1.0, 3),
-            pair(mode.damping, 100.0, 3)
+            pair(mode.damping, 100.0, 3),
+            of_model.map_or(String::new(), |model| format!("; the model's: {model}"))
+        );
+    }
+    for missing in compared.iter().flat_map(|c| &c.missing_hz) {
+        let _ = writeln!(
+            text,
+            "  no mode measured beside the model's at {missing:.1} Hz"
         );
     }
     let _ = writeln!(

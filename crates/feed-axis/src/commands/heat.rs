@@ -17,12 +17,12 @@ use super::heat_time::time;
 use super::heat_words::{Heated, HeatedNode, HeatedPlace};
 use super::motions::listed;
 use super::{heat_fit, heat_predict, heat_slow};
-use crate::context::{DEFAULT_AXIS, read_axis, read_text};
+use crate::context::{DEFAULT_AXIS, axis_with};
 use crate::exit::wrong_use;
 use crate::out_file;
 use crate::output::print;
 use crate::page::heat as heat_page;
-use crate::set_key::{SetKey, with_keys};
+use crate::set_key::SetKey;
 
 /// Options of `heat`.
 #[derive(Args)]
@@ -140,11 +140,7 @@ impl Options {
     }
 
     fn axis(&self) -> Result<Axis> {
-        if self.set.is_empty() {
-            return read_axis(&self.axis);
-        }
-        let content = with_keys(&read_text(&self.axis)?, &self.set)?;
-        Ok(Axis::read_changed(&self.axis, &content)?)
+        axis_with(&self.axis, &self.set)
     }
 
     /// The motion that repeats itself.

@@ -109,7 +109,7 @@ pub fn run(context: &Context) -> Result<()> {
     let results = results::gather(context)?;
     let [summary_path, report_path] = [SUMMARY, REPORT].map(|name| context.out.join(name));
     let mut files = FileSet::new(&context.out, &[SUMMARY, REPORT])?;
-    let json = serde_json::to_vec_pretty(&results.summary).into_diagnostic()?;
+    let json = crate::json::pretty(&results.summary).into_diagnostic()?;
     files.put(SUMMARY, &json)?;
     let html = axis_report::render(&page::page(context, &results))
         .into_diagnostic()

@@ -60,10 +60,7 @@ pub fn command(common: &Common) -> Result<()> {
         after: AFTER,
         machines: &made,
     };
-    write_whole(
-        &path,
-        &serde_json::to_vec_pretty(&report).into_diagnostic()?,
-    )?;
+    write_whole(&path, &crate::json::pretty(&report).into_diagnostic()?)?;
     let text = format!(
         "{}each move is a number in {}",
         words(&made, context.unit()),

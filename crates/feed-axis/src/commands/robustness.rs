@@ -114,7 +114,7 @@ impl AllDraws {
             rows,
         };
         let mut files = FileSet::new(&context.out, &[TABLE, PAGE])?;
-        let json = serde_json::to_vec_pretty(&table).into_diagnostic()?;
+        let json = crate::json::pretty(&table).into_diagnostic()?;
         files.put(TABLE, &json)?;
         let title = format!("Compensation of {}", table.axis);
         let page = Page::new(title).section(robustness_page::robustness(&table));

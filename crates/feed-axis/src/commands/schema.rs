@@ -52,22 +52,23 @@ impl File {
     pub fn schema(self) -> Value {
         let settings = SchemaSettings::draft2020_12().for_serialize();
         let generator = settings.into_generator();
-        match self {
-            Self::Axis => Registry::default().json_schema(),
+        let result = match self {
+            Self::Axis => return Registry::default().json_schema(),
             Self::Machine => {
                 // What a reader must give: keys with a default may be left out.
                 let settings = SchemaSettings::draft2020_12().for_deserialize();
-                settings
+                return settings
                     .into_generator()
                     .into_root_schema_for::<MachineText>()
-                    .to_value()
+                    .to_value();
             }
             Self::Summary => generator.into_root_schema_for::<Summary>().to_value(),
             Self::Loops => generator.into_root_schema_for::<LoopAnalysis>().to_value(),
             Self::Tuning => generator.into_root_schema_for::<TuneFound>().to_value(),
             Self::Frf => generator.into_root_schema_for::<FrfFound>().to_value(),
             Self::Discovery => generator.into_root_schema_for::<Discovery>().to_value(),
-        }
+        };
+        crate::json::with_words(result)
     }
 }
 

@@ -188,7 +188,7 @@ impl Job for Networks {
         let networks = format!("{} settings over {} seeds", self.settings.len(), self.seeds);
         let text = match &self.file {
             Some(file) => {
-                write_whole(file, &serde_json::to_vec_pretty(&table)?).map_err(failure)?;
+                write_whole(file, &crate::json::pretty(&table)?).map_err(failure)?;
                 format!("{networks} in {}", file.display())
             }
             None => {

@@ -11,11 +11,11 @@ use miette::{IntoDiagnostic, Result};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::analyse::{Ranges, axis_with};
+use super::analyse::Ranges;
 use super::control_table::with_tuned;
 use super::discover::moved;
 use super::frf;
-use crate::context::{DEFAULT_AXIS, read_text};
+use crate::context::{DEFAULT_AXIS, axis_with, read_text};
 use crate::out_file;
 use crate::output::{Worded, print, ready, write_whole};
 use crate::page::loops as loops_page;

@@ -28,8 +28,8 @@ pub fn page(found: &Checked) -> Page {
             Cell::text(item.shown_value()),
             Cell::text(item.shown_limit()),
             match item.margin {
-                Some(margin) => Cell::number(margin, 2).marked(mark),
-                None => Cell::text(item.shown_margin()),
+                Some(margin) if margin.is_finite() => Cell::number(margin, 2).marked(mark),
+                _ => Cell::text(item.shown_margin()),
             },
             Cell::text(item.shown_verdict()),
         ]);

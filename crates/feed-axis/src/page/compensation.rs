@@ -5,9 +5,11 @@ use axis_pipeline::compensation::{CompensatedRun, find};
 use axis_pipeline::strategies::{ReportTable as Group, STRATEGIES, StrategyKind, of_table};
 use axis_pipeline::tracking::Run;
 use axis_pipeline::validation::ValidatedTrajectory;
-use axis_report::{Cell, Section, Series, Table};
+use axis_report::{Cell, Notice, Section, Series, Table};
 
+use super::loops::sentence;
 use super::{best_if, pair, printed, times, tracking};
+use crate::context::Context;
 use crate::paper::{Pair, Row};
 use crate::results::Results;
 
@@ -23,7 +25,7 @@ fn column(strategy: &StrategyKind) -> Option<fn(&Row) -> Pair> {
 }
 
 /// The section.
-pub fn compensation(results: &Results) -> Section {
+pub fn compensation(context: &Context, results: &Results) -> Section {
     let unit = results.validation.unit;
     let [without, with] = [
         Group::WithoutFrictionFeedforward,
@@ -46,6 +48,10 @@ pub fn compensation(results: &Results) -> Section {
     let left_out = left_out(&results.compensation);
     let section = Section::new("Compensation")
         .paragraph("On the simulated machine. The compensator sees what a controller samples: reference, position of the load, motor speed, currents. Network: ΔS = S_ref − S + Ê, Ê predicted for the end of the cycle (Section 4.4). Transfer function: a linear model of the tracking error, driven by the reference and led by the position loop's time constant; with LuGre, the model of the error that LuGre leaves. LuGre: current for the friction along the reference, with the parameters identified on the machine. A figure is marked where its peak is at or below the paper's.");
+    let others = context.other_control();
+    let section = others.iter().fold(section, |section, difference| {
+        section.notice(Notice::Warn, sentence(difference))
+    });
     let section = match left_out.is_empty() {
         true => section,
         false => section.paragraph(format!(

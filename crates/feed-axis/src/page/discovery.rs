@@ -5,7 +5,7 @@ use axis_sim::Axis;
 use discrepancy::summary::SummaryFound;
 use discrepancy::{
     Against, Discovered, Discovery, EffectFound, FrictionCurve, Gap, NextExperiment, Overlay,
-    ReadUnit, Unknown, Verdict,
+    ReadUnit, Unknown, Verdict, said_evidence,
 };
 use miette::{IntoDiagnostic, Result};
 
@@ -146,15 +146,15 @@ fn effects(discovery: &Discovery) -> Section {
     }
     let mut others = Table::new(
         "What else was tried, and what was left out",
-        ["In place of", "effect", "fall of −2 log L"],
+        ["In place of", "effect", "evidence"],
     )
-    .note("Fall of −2 log L on the fit logs. The named effect reached the greatest fall, or about as much with fewer parameters.");
+    .note("Evidence is the fall of −2 log L on the fit logs: twice the natural logarithm of how many times more likely they are with the effect than without, so that 25 is a factor of 270 000. The named effect reached the greatest, or about as much with fewer parameters.");
     for effect in &discovery.effects {
         for (name, gain) in &effect.runners_up {
             others = others.row([
                 Cell::text(effect.name.clone()),
                 Cell::text(name.clone()),
-                Cell::number(*gain, 0),
+                Cell::text(said_evidence(*gain)),
             ]);
         }
     }
@@ -162,7 +162,7 @@ fn effects(discovery: &Discovery) -> Section {
         others = others.row([
             Cell::text("(not added)"),
             Cell::text(name.clone()),
-            Cell::number(*gain, 0),
+            Cell::text(said_evidence(*gain)),
         ]);
     }
     let section = Section::new("Effects");
@@ -320,8 +320,12 @@ fn unknown(unknown: &Unknown) -> Section {
         figure
     };
     let fall = match unknown.evidence {
-        [0.0, check] => format!("{check:.0} on the check logs"),
-        [fit, check] => format!("{fit:.0} on the fit logs, {check:.0} on the check logs"),
+        [0.0, check] => format!("{} on the check logs", said_evidence(check)),
+        [fit, check] => format!(
+            "{} on the fit logs, {} on the check logs",
+            said_evidence(fit),
+            said_evidence(check)
+        ),
     };
     Section::new("What no effect of the library explains")
         .paragraph(format!(
@@ -333,14 +337,16 @@ fn unknown(unknown: &Unknown) -> Section {
                 .clone()
                 .unwrap_or_else(|| { "No short formula does as much as the curve.".to_owned() })
         ))
-        .paragraph(format!("Fall of −2 log L: {fall}."))
+        .paragraph(format!(
+            "Evidence (fall of −2 log L; chance alone reaches some tens): {fall}."
+        ))
         .figure(figure)
 }
 
 fn next(next: &NextExperiment) -> Section {
     Section::new("Next experiment").paragraph(format!(
-        "{}: it separates {} from {}. A fall of −2 log L by {:.0} between the two is to be expected; 25 decide. The motion is in next-experiment.toml, for the command simulate (--program) and for the machine.",
-        capital(&next.what), next.separates[0], next.separates[1], next.by
+        "{}: it separates {} from {}. {}. The motion is in next-experiment.toml, for the command simulate (--program) and for the machine.",
+        capital(&next.what), next.separates[0], next.separates[1], next.said()
     ))
 }
 

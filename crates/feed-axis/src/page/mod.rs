@@ -37,7 +37,7 @@ pub fn page(context: &Context, results: &Results) -> Page {
         .section(tracking::model_and_machine(context, results))
         .section(network::network(results))
         .section(tracking::prediction(results))
-        .section(compensation::compensation(results));
+        .section(compensation::compensation(context, results));
     let page = match robustness::Robustness::of(context) {
         Some(made) => page.section(robustness::robustness(&made)),
         None => page,

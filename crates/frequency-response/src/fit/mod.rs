@@ -252,6 +252,20 @@ impl ModalFit {
         })
     }
 
+    /// The first number of modes, poles and delay that is not that of the parameters, but for rounding.
+    #[cfg(feature = "serde")]
+    pub(crate) fn contradiction(&self) -> Option<f64> {
+        const ROUNDING: f64 = 1e-9;
+        let n = self.parameters.count();
+        let none = nalgebra::DMatrix::zeros(n, n);
+        let own = refine::described_with(&self.plane, &self.parameters, &none);
+        let stated = Described::numbers(&self.modes, &self.poles, &self.delay_s);
+        let own = Described::numbers(&own.modes, &own.poles, &own.delay);
+        let is_same = |a: f64, b: f64| (a - b).abs() <= ROUNDING * a.abs().max(b.abs());
+        let mut both = stated.into_iter().zip(own);
+        both.find(|(a, b)| !is_same(*a, *b)).map(|(a, _)| a)
+    }
+
     /// The fitted response at a frequency, Hz.
     #[must_use]
     pub fn at(&self, frequency_hz: f64) -> Complex<f64> {

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use axis_fourier::Complex;
 use nalgebra::{DMatrix, DVector};
 
-use super::{FittedMode, FittedPole, Place, Target, Uncertain};
+use super::{FittedMode, FittedPole, Place, Plane, Target, Uncertain};
 
 /// Steps at most, and the share by which one must improve the sum for another to be made.
 const STEPS: usize = 60;
@@ -152,6 +152,22 @@ pub(crate) struct Described {
     pub delay: Uncertain,
 }
 
+impl Described {
+    /// Modes, poles and delay as numbers, without their deviations.
+    pub fn numbers(modes: &[FittedMode], poles: &[FittedPole], delay: &Uncertain) -> Vec<f64> {
+        let of_mode = |mode: &FittedMode| {
+            let (frequency, damping) = (mode.frequency_hz.value, mode.damping.value);
+            [frequency, damping, mode.residue.re, mode.residue.im]
+        };
+        let of_pole = |pole: &FittedPole| [pole.rate.value, pole.residue.value];
+        let modes = modes.iter().flat_map(of_mode);
+        modes
+            .chain(poles.iter().flat_map(of_pole))
+            .chain([delay.value])
+            .collect()
+    }
+}
+
 /// Modes, real poles and delay with their deviations: the inverse of JᵀJ, times the mean square of the
 /// residual where that is above 1, times `correlation` as neighbouring lines err together.
 pub(crate) fn described(
@@ -164,7 +180,15 @@ pub(crate) fn described(
     let free = 2.0 * target.places.len() as f64 - parameters.count() as f64;
     let widened = correlation * (squares / free.max(1.0)).max(1.0);
     let covariance = inverse(&matrix)? * widened;
-    let plane = &target.plane;
+    Some(described_with(&target.plane, parameters, &covariance))
+}
+
+/// The same, the unknowns having this covariance.
+pub(crate) fn described_with(
+    plane: &Plane,
+    parameters: &Parameters,
+    covariance: &DMatrix<f64>,
+) -> Described {
     let scale = plane.scale;
     let deviation = |i: usize| covariance[(i, i)].max(0.0).sqrt();
     let real = |i: usize| {
@@ -226,11 +250,11 @@ pub(crate) fn described(
     };
     let mut modes: Vec<FittedMode> = (0..parameters.pairs).map(mode).collect();
     modes.sort_by(|a, b| a.frequency_hz.value.total_cmp(&b.frequency_hz.value));
-    Some(Described {
+    Described {
         modes,
         poles,
         delay,
-    })
+    }
 }
 
 /// What a residue in the plane is to that of the machine: pT/(e^{pT} − 1) of a held input.

@@ -14,6 +14,7 @@ use crate::commands::validate;
 use crate::context::{Common, Context, DEFAULT_AXIS};
 use crate::exit::wrong_use;
 use crate::file_set::FileSet;
+use crate::out_file::Force;
 use crate::strategy_name::strategy_name_of;
 
 /// Valid limits while those of the export are not known.
@@ -90,6 +91,8 @@ pub struct Options {
     /// Folder for the files
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+    #[command(flatten)]
+    force: Force,
 }
 
 impl Options {
@@ -121,6 +124,7 @@ impl Options {
     pub fn write(&self, texts: &[&NamedText]) -> Result<()> {
         let last_first = || texts.iter().rev();
         let names: Vec<&str> = last_first().map(|text| &*text.name).collect();
+        self.force.spare_in(&self.out, &names)?;
         let mut files = FileSet::new(&self.out, &names)?;
         last_first().try_for_each(|text| files.put(&text.name, text.text.as_bytes()))?;
         files.publish()

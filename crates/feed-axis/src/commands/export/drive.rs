@@ -10,8 +10,9 @@ use clap::Args;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::Serialize;
 
-use crate::context::{DEFAULT_AXIS, read_axis};
+use crate::context::{DEFAULT_AXIS, other_control, read_axis};
 use crate::file_set::FileSet;
+use crate::out_file::Force;
 use crate::output::{Worded, print};
 
 const TERMS: &str = "drive.json";
@@ -33,6 +34,8 @@ pub struct Options {
     /// periodic lead errors, drive-turn.csv (over the motor's turn)
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    #[command(flatten)]
+    force: Force,
 }
 
 /// What drive.json holds.
@@ -43,6 +46,8 @@ struct Export<'a> {
     /// What stands for the machine. Simulated, never measured.
     machine: &'a str,
     machine_fingerprint: &'a str,
+    /// Keys of the controller that the machine's file has otherwise.
+    control_differences: Vec<String>,
     version: &'a str,
     /// Where the position loop is closed.
     position_from: &'a str,
@@ -56,6 +61,8 @@ struct Export<'a> {
 
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
+    let names = [OVER_POSITION, OVER_TURN, TERMS];
+    options.force.spare_in(&options.out, &names)?;
     let axis = read_axis(&options.axis)?;
     let named = axis.experiment.as_ref().map(|e| e.machine.clone());
     let machine = match options.machine.clone().or(named) {
@@ -67,7 +74,7 @@ pub fn command(options: &Options) -> Result<()> {
     let of = of.wrap_err_with(of_axis)?;
     let errors = axis.position_errors().into_diagnostic();
     let errors = errors.wrap_err_with(of_axis)?;
-    let mut files = FileSet::new(&options.out, &[OVER_POSITION, OVER_TURN, TERMS])?;
+    let mut files = FileSet::new(&options.out, &names)?;
     let mut tables = vec![OVER_POSITION];
     let position = drive_terms::over_position(&axis, &of, &errors);
     files.put(OVER_POSITION, text_of(&position).as_bytes())?;
@@ -88,6 +95,7 @@ pub fn command(options: &Options) -> Result<()> {
         axis_fingerprint: &axis.fingerprint,
         machine: &machine.name,
         machine_fingerprint: &machine.fingerprint,
+        control_differences: other_control(&axis, &machine),
         version: env!("CARGO_PKG_VERSION"),
         position_from: if of.from_motor() { "motor" } else { "load" },
         terms: drive_terms::terms(&axis, &of),
@@ -96,7 +104,7 @@ pub fn command(options: &Options) -> Result<()> {
         loss,
         loss_missing: missing,
     };
-    let bytes = serde_json::to_vec_pretty(&export).into_diagnostic()?;
+    let bytes = crate::json::pretty(&export).into_diagnostic()?;
     files.put(TERMS, &bytes)?;
     files.publish()?;
     let text = words(&export, &options.out).into_diagnostic()?;
@@ -133,6 +141,9 @@ fn words(export: &Export<'_>, out: &Path) -> std::result::Result<String, fmt::Er
             SixDigits(term.drive_value).to_string(),
             term.drive_unit
         )?;
+    }
+    for difference in &export.control_differences {
+        writeln!(text, "warning: {difference}")?;
     }
     let unit = &export.loss_unit;
     writeln!(

@@ -14,6 +14,7 @@ use serde::Serialize;
 use super::controller::Results;
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
 use crate::exit::wrong_use;
+use crate::out_file::{Force, spare};
 use crate::output::{print, write_whole};
 use crate::strategy_name::strategy_name_of;
 
@@ -26,6 +27,8 @@ pub struct Options {
     /// The unit's file
     #[arg(long, value_name = "FILE.fmu")]
     out: PathBuf,
+    #[command(flatten)]
+    force: Force,
     /// Version of FMI: most programs import 2.0, fewer 3.0
     #[arg(long, value_name = "VERSION", default_value = "3")]
     fmi: Fmi,
@@ -106,6 +109,7 @@ impl fmt::Display for Exported<'_> {
 
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
+    spare(&options.out, options.force.force)?;
     let version = match options.fmi {
         Fmi::Two => FmiVersion::V2,
         Fmi::Three => FmiVersion::V3,

@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use super::controller;
 use crate::commands::validate;
+use crate::out_file::{Force, spare};
 use crate::output::{print, write_whole};
 
 /// Options of `export onnx`.
@@ -21,6 +22,8 @@ pub struct Options {
     /// The network's file
     #[arg(long, value_name = "FILE.onnx")]
     out: PathBuf,
+    #[command(flatten)]
+    force: Force,
 }
 
 /// What was written.
@@ -48,6 +51,7 @@ impl fmt::Display for Exported<'_> {
 
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
+    spare(&options.out, options.force.force)?;
     let context = options.results.open()?;
     let predictors = validate::predictors(&context, &[Need::Network])?;
     let bytes = onnx::one_cycle(&predictors).into_diagnostic()?;

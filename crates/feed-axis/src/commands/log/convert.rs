@@ -7,7 +7,6 @@ use axis_log::intake::{Done, Options as Intake, PreparedLog, files, prepare};
 use axis_log::quality::clock;
 use axis_log::{Log, Mapping, TIME_CHANNEL, WriteProblem, columns, write};
 use clap::Args;
-use discrepancy::logs::exact_channels;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::Serialize;
 
@@ -95,7 +94,7 @@ pub fn convert(options: &Options) -> Result<()> {
     not_over_the_log(&options.out, &paths)?;
     let none = Mapping::default();
     let mapping = axis.as_ref().map_or(&none, |a| &a.log);
-    let exact = axis.as_ref().map(exact_channels).unwrap_or_default();
+    let exact: Vec<&str> = axis_sim::commanded_channels().collect();
     let intake = Intake {
         exact: &exact,
         rate_hz: options.rate,

@@ -16,9 +16,9 @@ use axis_log::{
     propose,
 };
 use axis_report::{Page, render};
-use axis_sim::Axis;
+use axis_sim::{Axis, commanded_channels};
 use clap::{Args, Subcommand};
-use discrepancy::logs::{exact_channels, relations};
+use discrepancy::logs::relations;
 use miette::{IntoDiagnostic, Result, miette};
 
 use super::discover::unused;
@@ -153,7 +153,7 @@ fn valid_rate(rate: Option<f64>) -> Result<()> {
 fn look(path: &Path, axis: Option<&Axis>, rate_hz: Option<f64>) -> Result<Seen> {
     let none = Mapping::default();
     let mapping = axis.map_or(&none, |a| &a.log);
-    let exact = axis.map(exact_channels).unwrap_or_default();
+    let exact: Vec<&str> = commanded_channels().collect();
     let options = Intake {
         exact: &exact,
         rate_hz,
