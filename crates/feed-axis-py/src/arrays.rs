@@ -205,6 +205,7 @@ whole! {
     n: usize, up to 100_000_000;
     poles: usize, up to 16;
     seed: u64, up to u64::MAX;
+    start: u64, up to 1 << 53;
     threads: usize, up to 1024;
 }
 

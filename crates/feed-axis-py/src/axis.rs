@@ -11,7 +11,7 @@ use toml::Table;
 
 use crate::dict::{dict_of, table_of};
 use crate::errors::{AxisError, ParameterError, raise, text_of};
-use crate::motion::Move;
+use crate::moves::Move;
 use crate::value::{Value, value};
 
 /// A feed axis: mechanism, motor, control, sensors, friction and loads, checked once.

@@ -8,7 +8,7 @@ use pyo3::types::{PyDict, PyModule, PyTuple};
 use crate::axis::PyAxis;
 use crate::errors::{SearchError, package, raise};
 use crate::html::{page_to, table};
-use crate::motion::Program;
+use crate::motion_program::Program;
 use crate::value::{Value, value};
 
 /// A number of an effect, with its 95 % interval.

@@ -8,14 +8,14 @@
 //!
 //! # Rooms
 //! - `begin`: axes to begin with. `loops`: margins and tuning of an axis' loops. `frf`: frequency responses from logs. `linear`: state space and frequency responses. `controller`: an unknown one, from logs.
-//! - `axis`, `motion`, `simulate`, `run`: an axis from a file or a dict, along a motion, to
+//! - `axis`, `moves`, `motion_program`, `motion`, `simulate`, `run`: an axis from a file or a dict, along a motion, to
 //!   arrays.
 //! - `machine`, `toolpath`, `contour`, `circles`: several axes on one path, and what circular tests show.
 //! - `check`: an axis against the data sheets of its parts.
 //! - `log`, `discover`, `discovery`: what a model lacks, from files, frames or arrays.
 //! - `compensation`, `sample`, `identify`, `learn`, `export`: corrections, cycle by cycle, on whole moves, and for controllers.
 //! - `network`, `one_cycle`: training and prediction; samples of one control cycle.
-//! - `lugre_law`, `beam`, `design`: the parts for themselves.
+//! - `lugre_law`, `general_lugre`, `beam`, `design`: the parts for themselves.
 //! - `arrays`, `dict`: conversion. `value`: equality, copies and pickles. `errors`: exceptions. `html`: tables of notebooks. `long`: long work.
 //!
 //! # Long work
@@ -41,6 +41,7 @@ mod discovery;
 mod errors;
 mod export;
 mod frf;
+mod general_lugre;
 mod heat;
 mod html;
 mod identify;
@@ -52,10 +53,13 @@ mod loops;
 mod lugre_law;
 mod machine;
 mod motion;
+mod motion_program;
+mod moves;
 mod network;
 mod one_cycle;
 mod run;
 mod sample;
+mod sampled_motion;
 mod simulate;
 mod toolpath;
 mod value;
@@ -80,7 +84,7 @@ mod _feed_axis {
     #[pymodule_export]
     use crate::controller::identify_control;
     #[pymodule_export]
-    use crate::design::latin_hypercube;
+    use crate::design::{halton, latin_hypercube, sobol};
     #[pymodule_export]
     use crate::discover::discover;
     #[pymodule_export]
@@ -91,6 +95,8 @@ mod _feed_axis {
         ParameterError, SearchError, SimulationError, StrategyError,
     };
     #[pymodule_export]
+    use crate::general_lugre::PyGeneralLuGre;
+    #[pymodule_export]
     use crate::identify::TransferFunctions;
     #[pymodule_export]
     use crate::learn::{MoveCorrection, identify, learn};
@@ -99,7 +105,9 @@ mod _feed_axis {
     #[pymodule_export]
     use crate::machine::PyMachine;
     #[pymodule_export]
-    use crate::motion::{Move, Program, PySCurve};
+    use crate::motion_program::Program;
+    #[pymodule_export]
+    use crate::moves::{Move, PySCurve};
     #[pymodule_export]
     use crate::network::PyNetwork;
     #[pymodule_export]

@@ -36,6 +36,25 @@ impl Value for PyLuGre {
 
 value!(PyLuGre, hash);
 
+/// What `friction` gives at each of the speeds that lie `dt_s` apart, of the speed before, if any, and of this one.
+pub(crate) fn along(
+    speed_rad_s: &Bound<'_, PyAny>,
+    dt_s: f64,
+    mut friction: impl FnMut(Option<f64>, f64) -> f64,
+) -> PyResult<Vec<f64>> {
+    if !(dt_s > 0.0 && dt_s.is_finite()) {
+        return Err(ParameterError::new_err(format!(
+            "dt_s is {dt_s}, but must be finite and greater than 0"
+        )));
+    }
+    let speeds = line::<ParameterError>(speed_rad_s, "speed_rad_s")?;
+    let mut before = None;
+    let torques = speeds
+        .iter()
+        .map(|&speed| friction(before.replace(speed), speed));
+    Ok(torques.collect())
+}
+
 #[pymethods]
 impl PyLuGre {
     #[new]
@@ -121,20 +140,13 @@ impl PyLuGre {
         speed_rad_s: &Bound<'py, PyAny>,
         dt_s: f64,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        if !(dt_s > 0.0 && dt_s.is_finite()) {
-            return Err(ParameterError::new_err(format!(
-                "dt_s is {dt_s}, but must be finite and greater than 0"
-            )));
-        }
-        let speeds = line::<ParameterError>(speed_rad_s, "speed_rad_s")?;
-        let (mut bristle, mut before) = (0.0, None);
-        let step = |&speed: &f64| {
-            if let Some(before) = before.replace(speed) {
+        let mut bristle = 0.0;
+        let torques = along(speed_rad_s, dt_s, |before, speed| {
+            if let Some(before) = before {
                 bristle = self.0.step(bristle, before, speed, dt_s);
             }
             self.0.torque(bristle, speed)
-        };
-        let torques: Vec<f64> = speeds.iter().map(step).collect();
+        })?;
         Ok(torques.into_pyarray(py))
     }
 

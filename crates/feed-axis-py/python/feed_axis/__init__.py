@@ -15,6 +15,7 @@ from ._feed_axis import (
     Discovery,
     Effect,
     FeedAxisError,
+    GeneralLuGre,
     LogError,
     LoopError,
     LuGre,
@@ -41,11 +42,13 @@ from ._feed_axis import (
     discover,
     examples,
     fit_circles,
+    halton,
     identify,
     identify_control,
     latin_hypercube,
     learn,
     new,
+    sobol,
 )
 
 __all__ = [
@@ -60,6 +63,7 @@ __all__ = [
     "Discovery",
     "Effect",
     "FeedAxisError",
+    "GeneralLuGre",
     "LogError",
     "LoopError",
     "LuGre",
@@ -86,9 +90,11 @@ __all__ = [
     "discover",
     "examples",
     "fit_circles",
+    "halton",
     "identify",
     "identify_control",
     "latin_hypercube",
     "learn",
     "new",
+    "sobol",
 ]

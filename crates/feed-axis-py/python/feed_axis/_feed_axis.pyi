@@ -23,6 +23,7 @@ __all__ = [
     "Discovery",
     "Effect",
     "FeedAxisError",
+    "GeneralLuGre",
     "LogError",
     "LoopError",
     "LuGre",
@@ -49,11 +50,13 @@ __all__ = [
     "discover",
     "examples",
     "fit_circles",
+    "halton",
     "identify",
     "identify_control",
     "latin_hypercube",
     "learn",
     "new",
+    "sobol",
 ]
 
 __version__: Final[str]
@@ -1318,6 +1321,79 @@ class LuGre:
     def __hash__(self) -> int: ...
 
 @final
+class GeneralLuGre:
+    """LuGre friction with levels by direction, an exponent of the Stribeck curve and viscous friction of second and third order: the keys of `friction` in an axis file. For a contact that slides along a line read N for N·m and m for rad.
+
+    The friction at constant speed v is g sign v + k₁ v + k₂ v |v| + k₃ v³, with g = F_C + (F_S − F_C) exp(−(|v|/v_S)^δ).
+
+    >>> bristles = {"stribeck_speed_rad_s": 0.3, "stiffness_n_m_rad": 2e3, "damping_n_m_s_rad": 1.0, "viscous_n_m_s_rad": 0.02}
+    >>> law = fa.GeneralLuGre(coulomb_n_m=1.0, stiction_n_m=1.5, coulomb_backward_n_m=1.2, **bristles)
+    >>> law.steady_state([-10.0, 10.0])
+    """
+
+    def __new__(
+        cls,
+        *,
+        coulomb_n_m: float,
+        stiction_n_m: float,
+        stribeck_speed_rad_s: float,
+        stiffness_n_m_rad: float,
+        damping_n_m_s_rad: float,
+        viscous_n_m_s_rad: float,
+        coulomb_backward_n_m: float | None = None,
+        stiction_backward_n_m: float | None = None,
+        stribeck_exponent: float = 2.0,
+        viscous_quadratic_n_m_s2_rad2: float = 0.0,
+        viscous_cubic_n_m_s3_rad3: float = 0.0,
+    ) -> Self:
+        """A law of these parameters. Levels at negative speeds are those at positive ones, if left out.
+
+        Raises ParameterError.
+        """
+    @property
+    def coulomb_n_m(self) -> float:
+        """Coulomb level at positive speeds, N·m."""
+    @property
+    def stiction_n_m(self) -> float:
+        """Break-away level at positive speeds, N·m."""
+    @property
+    def coulomb_backward_n_m(self) -> float:
+        """Coulomb level at negative speeds, a positive number, N·m."""
+    @property
+    def stiction_backward_n_m(self) -> float:
+        """Break-away level at negative speeds, a positive number, N·m."""
+    @property
+    def stribeck_speed_rad_s(self) -> float:
+        """Stribeck speed, rad/s."""
+    @property
+    def stribeck_exponent(self) -> float:
+        """Exponent δ of the Stribeck curve."""
+    @property
+    def stiffness_n_m_rad(self) -> float:
+        """Stiffness of the bristles σ0, N·m/rad."""
+    @property
+    def damping_n_m_s_rad(self) -> float:
+        """Damping of the bristles σ1, N·m·s/rad."""
+    @property
+    def viscous_n_m_s_rad(self) -> float:
+        """Viscous friction of first order k₁, N·m·s/rad."""
+    @property
+    def viscous_quadratic_n_m_s2_rad2(self) -> float:
+        """Viscous friction of second order k₂, N·m·s²/rad²."""
+    @property
+    def viscous_cubic_n_m_s3_rad3(self) -> float:
+        """Viscous friction of third order k₃, N·m·s³/rad³."""
+    def steady_state(self, speed_rad_s: ArrayLike) -> _Floats:
+        """Friction at constant speeds (rad/s), N·m: an array of one dimension. Raises ParameterError."""
+    def simulate(self, speed_rad_s: ArrayLike, dt_s: float) -> _Floats:
+        """Friction (N·m) along speeds (rad/s) that lie `dt_s` apart, linear between; bristles at rest at the first.
+
+        Raises ParameterError.
+        """
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+
+@final
 class MoveCorrection:
     """What was learned of a move: where its load is to be led besides, cycle by cycle. `learn` makes it, `Compensator` uses it.
 
@@ -1445,4 +1521,42 @@ def latin_hypercube(
     Raises ParameterError.
 
     >>> fa.latin_hypercube(5, [(0.0, 1.0), (-1.0, 1.0)])
+    """
+
+def sobol(
+    n: _Whole,
+    bounds: ArrayLike,
+    *,
+    scrambling: Literal["owen", "linear-matrix"] | None = "owen",
+    seed: _Whole = 1,
+    start: _Whole = 0,
+) -> _Floats:
+    """`n` points of Sobol's sequence between bounds, from point `start` on: even in several variables together, for means over the points. An array of shape (n, variables).
+
+    `bounds`: least and greatest value of each variable, of shape (variables, 2); at most 1024 variables. `scrambling`: `owen` flips each digit
+    at random, `linear-matrix` does so by a random matrix and is made faster, None is the plain sequence, which begins at the least values. Take a power of two of the
+    points, and the first among them.
+
+    Raises ParameterError.
+
+    >>> points = fa.sobol(1024, [(0.0, 1.0), (-1.0, 1.0)])
+    >>> more = fa.sobol(1024, [(0.0, 1.0), (-1.0, 1.0)], start=1024)
+    """
+
+def halton(
+    n: _Whole,
+    bounds: ArrayLike,
+    *,
+    scrambled: bool = True,
+    seed: _Whole = 1,
+    start: _Whole = 0,
+) -> _Floats:
+    """`n` points of Halton's sequence between bounds, from point `start` on: any number of points is as good as the next. An array of shape (n, variables).
+
+    `bounds`: least and greatest value of each variable, of shape (variables, 2); at most 1024 variables. `scrambled` permutes the digits of each variable at random;
+    the plain sequence begins at the least values, and has bands in more than about ten variables.
+
+    Raises ParameterError.
+
+    >>> fa.halton(500, [(0.0, 1.0), (-1.0, 1.0)])
     """
