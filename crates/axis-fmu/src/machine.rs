@@ -261,7 +261,7 @@ fn made<const D: usize>(file: &MachineFile) -> Result<Arc<CoupledMachine<D>>, Un
 }
 
 fn text_of(path: &Path) -> Result<String, UnitError> {
-    std::fs::read_to_string(path).map_err(|source| {
+    axis_log::read_text(path, None).map_err(|source| {
         UnitError::MachineFile(Box::new(MachineFileError::Unread {
             file: path.to_owned(),
             source,

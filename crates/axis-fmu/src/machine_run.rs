@@ -18,6 +18,9 @@ pub(crate) struct MachineRun<const D: usize> {
     cycles: Vec<Cycle>,
 }
 
+/// Share of the drives' common period in which each begins its first control cycle: there are not so many cycles in one.
+const FIRST: f64 = 1e-4;
+
 impl<const D: usize> MachineRun<D> {
     /// At rest at the references. Drives show what they would sample there.
     pub fn begin(
@@ -30,7 +33,7 @@ impl<const D: usize> MachineRun<D> {
             cycles: Vec::new(),
             machine,
         };
-        run.look(given, 1.0, true)?;
+        run.look(given, FIRST, true)?;
         Ok(Paced::new(run))
     }
 

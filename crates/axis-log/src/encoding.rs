@@ -30,7 +30,7 @@ pub(crate) fn plain(bytes: Vec<u8>) -> Result<Vec<u8>, CsvProblem> {
 }
 
 /// Reads a text file of settings, such as TOML, JSON or a G-code program: UTF-8, or UTF-16 as Notepad and
-/// PowerShell's `>` write it, with or without a byte-order mark, which is left out. At most `limit` bytes, if
+/// PowerShell's `>` write it, with or without a byte-order mark, which is left out. At most `limit` bytes (whole MiB), if
 /// there is a limit.
 ///
 /// Other than of a log's text, the encoding of what is not UTF-8 is not guessed: a wrong letter in a name or in a path of
@@ -44,7 +44,7 @@ pub fn read_text(path: &Path, limit: Option<u64>) -> std::io::Result<String> {
     let file = std::fs::File::open(path)?;
     file.take(limit.saturating_add(1)).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > limit {
-        return Err(invalid(format!("it is larger than {} KiB", limit / 1024)));
+        return Err(invalid(format!("it is larger than {} MiB", limit >> 20)));
     }
     text_of(bytes)
 }
@@ -79,6 +79,9 @@ fn unmarked(mut bytes: Vec<u8>) -> Option<Vec<u8>> {
         return Some(bytes);
     };
     let units = bytes[skip..].chunks_exact(2);
+    if !units.remainder().is_empty() {
+        return None;
+    }
     let units: Vec<u16> = units.map(|pair| unit([pair[0], pair[1]])).collect();
     String::from_utf16(&units).ok().map(String::into_bytes)
 }

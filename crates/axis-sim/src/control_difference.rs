@@ -11,12 +11,10 @@ use crate::six_digits::SixDigits;
 /// Share by which two numbers may differ and be the same: rounding of their units.
 const ROUNDING: f64 = 1e-9;
 
-/// Keys of which a file has one or the other for the same gain.
-const SPELT_TWICE: [&str; 4] = [
-    "position_gain",
-    "kv",
-    "speed_integral",
-    "speed_integral_time",
+/// Keys of which a file has one or the other for the same gain: that of the position, and of the speed's integral.
+const SPELT_TWICE: [[&str; 2]; 2] = [
+    ["position_gain", "kv"],
+    ["speed_integral", "speed_integral_time"],
 ];
 
 /// A key of the controller that two axis files have otherwise.
@@ -69,11 +67,15 @@ pub fn control_differences(model: &Axis, machine: &Axis) -> Vec<ControlDifferenc
         ));
     }
     let has_same = has_same_gains(model, machine);
+    let is_same_gain = |name: &str| {
+        let mut spelt = SPELT_TWICE.iter().zip(has_same);
+        spelt.any(|(keys, is_same)| is_same && keys.contains(&name))
+    };
     let effort = model.actuator.effort();
     for key in model.control.kind().keys {
         let values = [model, machine].map(|axis| axis.control.values());
         let units = units_of_gain(&*model.control, key, effort, &*model.mechanism);
-        if !(has_same && SPELT_TWICE.contains(&key.name())) {
+        if !is_same_gain(key.name()) {
             let found = differing(key, values, &units);
             all.extend(found.map(|found| ControlDifference {
                 key: format!("control.{}", found.key),
@@ -93,16 +95,18 @@ fn is_same(a: f64, b: f64) -> bool {
     (a - b).abs() <= ROUNDING * a.abs().max(b.abs())
 }
 
-/// Whether the loops have the same gains, however the files spell them.
-fn has_same_gains(model: &Axis, machine: &Axis) -> bool {
+/// Whether the loops have the same gain of the position, and of the speed's integral, however the files spell them.
+fn has_same_gains(model: &Axis, machine: &Axis) -> [bool; 2] {
     let gains = |axis: &Axis| {
         let found = axis
             .control
             .cascade(axis.travel_per_radian(), axis.period)?;
-        Some([found.position, found.speed, found.speed_integral])
+        Some([found.position, found.speed_integral])
     };
     let both = gains(model).zip(gains(machine));
-    both.is_some_and(|(a, b)| a.iter().zip(&b).all(|(a, b)| is_same(*a, *b)))
+    both.map_or([false; 2], |(a, b)| {
+        std::array::from_fn(|k| is_same(a[k], b[k]))
+    })
 }
 
 /// A key that two parts have otherwise, in the unit of the first.

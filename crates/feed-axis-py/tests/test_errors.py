@@ -41,8 +41,8 @@ def test_a_file_that_is_not_there_is_python_s_own_error(axis: fa.Axis, tmp_path:
     with pytest.raises(FileNotFoundError, match="gone"):
         network.save(gone / "network")
     gone.write_bytes(b"\xff\xfe\x00")
-    refused(fa.AxisError, "is no text in UTF-8", lambda: fa.Axis.load(gone))
-    refused(fa.MotionError, "is no text in UTF-8", lambda: fa.Program.load(gone))
+    refused(fa.AxisError, "begins as UTF-16", lambda: fa.Axis.load(gone))
+    refused(fa.MotionError, "begins as UTF-16", lambda: fa.Program.load(gone))
     gone.write_text("start_mm = 600,5\n")
     refused(fa.MotionError, r"decimal point: start_mm = 600\.5", lambda: fa.Program.load(gone))
 

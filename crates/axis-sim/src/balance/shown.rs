@@ -227,19 +227,24 @@ impl ObservedMotion {
     /// The load's course where the motor's and its torque are known.
     fn behind(&self, axis: &Axis, motor: &Course, torque: &[f64]) -> Course {
         let r = self.travel_per_radian;
-        let mut load = motor.times(r);
+        let load = motor.times(r);
         let middle = load.position.get(load.position.len() / 2).copied();
         let compliance = axis.mechanism.compliance(middle.unwrap_or(0.0));
         if compliance == 0.0 {
             return load;
         }
         let own = axis.mechanism.total_inertia() - axis.mechanism.load_inertia() * r * r;
-        for (k, position) in load.position.iter_mut().enumerate() {
-            *position -= r * compliance * (torque[k] - own * motor.acceleration[k]);
-        }
-        load.speed = derivative(&load.position, self.period);
-        load.acceleration = derivative(&load.speed, self.period);
-        load
+        let lags = torque.iter().zip(&motor.acceleration);
+        let lag = lags.map(|(torque, a)| r * compliance * (torque - own * a));
+        let position: Vec<f64> = lag.collect();
+        let speed = derivative(&position, self.period);
+        let acceleration = derivative(&speed, self.period);
+        let lag = Course {
+            position,
+            speed,
+            acceleration,
+        };
+        load.plus(-1.0, &lag)
     }
 
     fn of_whom(&self, whose: Whose) -> Option<&Measured> {

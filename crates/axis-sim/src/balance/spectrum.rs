@@ -107,8 +107,9 @@ impl Differences {
 }
 
 impl Differences {
-    /// At knots of the frequency, Hz, the share of the power about each that is above noise of this density, 0 to 1.
-    fn above(&self, noise: f64) -> Vec<[f64; 2]> {
+    /// At knots of the frequency, Hz, the share of the power about each that is above noise of this density, 0 to 1, while the
+    /// machine moves: for the share `moving` of the time.
+    fn above(&self, noise: f64, moving: f64) -> Vec<[f64; 2]> {
         let n = self.density.len();
         let mut knots = Vec::new();
         let mut k = 0;
@@ -118,8 +119,10 @@ impl Differences {
             let of_noise = |k: usize| noise * self.gain(k as f64 * self.bin);
             let of_noise: f64 = about.clone().map(of_noise).sum();
             let measured: f64 = self.density[about].iter().sum();
-            let share = match of_noise < measured {
-                true => 1.0 - of_noise / measured,
+            // What moves does so in a part of the time, in which it has more than its mean.
+            let motion = (measured - of_noise).max(0.0);
+            let share = match motion > 0.0 {
+                true => motion / (motion + moving * of_noise),
                 false => 0.0,
             };
             knots.push([k as f64 * self.bin, share]);
@@ -129,18 +132,45 @@ impl Differences {
     }
 }
 
-/// The step in which a channel counts, of which all its differences are multiples; 0 if it has none.
+/// The step in which a channel counts, of which its differences, and the differences of these, are multiples; 0 if it
+/// has none.
 fn resolution(series: &[f64]) -> f64 {
-    let steps = series.windows(2).map(|w| (w[1] - w[0]).abs());
-    let steps: Vec<f64> = steps.filter(|d| *d > 0.0).collect();
-    let least = steps.iter().copied().fold(f64::INFINITY, f64::min);
+    let steps: Vec<f64> = series.windows(2).map(|w| w[1] - w[0]).collect();
+    let greatest = steps.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
+    let second = steps.windows(2).map(|w| w[1] - w[0]);
+    let all = steps.iter().copied().chain(second).map(f64::abs);
+    // Without rounding of the numbers themselves.
+    let all: Vec<f64> = all.filter(|d| *d > ROUNDING * greatest).collect();
+    let least = all.iter().copied().fold(f64::INFINITY, f64::min);
     // Of a channel that has none the share is a fifth.
     let is_multiple = |step: &&f64| ((*step / least).fract() - 0.5).abs() > 0.4;
-    let multiples = steps.iter().filter(is_multiple).count();
-    match multiples as f64 >= 0.9 * steps.len() as f64 && least.is_finite() {
+    let multiples = all.iter().filter(is_multiple).count();
+    // Steps that are all alike, as those of a speed without noise, say nothing.
+    let differ = all.iter().any(|step| *step > 1.5 * least) || all.len() < steps.len();
+    match multiples as f64 >= 0.9 * all.len() as f64 && least.is_finite() && differ {
         true => least,
         false => 0.0,
     }
+}
+
+/// Share of a channel's greatest step below which a difference is rounding of its numbers.
+const ROUNDING: f64 = 1e-7;
+
+/// Share of a log's time in which it moves: in which a channel goes further within 32 samples, or is greater in their mean, than
+/// six deviations of its noise.
+fn moving_share(series: &[f64], source: Source, deviation: f64) -> f64 {
+    const BLOCK: usize = 32;
+    let moves = |block: &&[f64]| match source {
+        Source::Position => (block[BLOCK - 1] - block[0]).abs() > 6.0 * deviation,
+        Source::Speed => {
+            let mean = block.iter().sum::<f64>() / BLOCK as f64;
+            mean.abs() > 6.0 * deviation / (BLOCK as f64).sqrt()
+        }
+    };
+    let blocks = series.chunks_exact(BLOCK);
+    let all = blocks.len();
+    let moving = blocks.filter(moves).count();
+    moving.max(1) as f64 / all.max(1) as f64
 }
 
 /// Density of the noise of a channel that is not differentiated, least of what its upper
@@ -164,7 +194,8 @@ pub(super) struct Noise {
     bin: f64,
     /// Mean square of the acceleration below each bin's upper edge, noise included.
     power: Vec<f64>,
-    /// Knots of the frequency, Hz, and the share of the power about each that is motion and not noise, 0 to 1.
+    /// Knots of the frequency, Hz, and the share of the power about each that is motion and not noise while the machine moves,
+    /// 0 to 1.
     motion: Vec<[f64; 2]>,
 }
 
@@ -195,12 +226,13 @@ impl Noise {
             sum
         };
         let density = [least.max(rounding), most.max(rounding)];
+        let moving = moving_share(series, source, (0.5 * density[1] / period).sqrt());
         Self {
             source,
             density,
             bin,
             power: differences.density.iter().enumerate().map(power).collect(),
-            motion: differences.above(density[1]),
+            motion: differences.above(density[1], moving),
         }
     }
 
@@ -288,9 +320,9 @@ impl Noise {
     /// The highest frequency up to `most` below which noise takes no more than `share` of
     /// the acceleration's power; if there is none, that where it takes least.
     ///
-    /// Higher where that is of no weight: noise draws an inertia by the share that it takes, and
-    /// leaves that share of what the acceleration is for certain, that is below the frequency
-    /// found first. With less than `error` (RMS, m/s² or rad/s²) left, it may take any share.
+    /// Higher where that is of no weight: by the share that noise takes, the expected acceleration is made of its spectrum
+    /// instead of measured, as a share of what it is for certain, that is below the frequency
+    /// found first. With less than `error` (RMS, m/s² or rad/s²) of that, it may take any share.
     pub fn cutoff(&self, most: f64, share: f64, error: f64) -> f64 {
         const STEPS: i32 = 200;
         // From the highest down, to a thousandth of it.
@@ -329,6 +361,13 @@ mod tests {
         let counted: Vec<f64> = motion.iter().map(|x| (x / 1e-4).round() * 1e-4).collect();
         assert!((resolution(&counted) - 1e-4).abs() < 1e-12);
         assert!(resolution(&[1.0; 10]).abs() < f64::MIN_POSITIVE);
+        // A constant speed, as it is, with a ripple, and counted.
+        let line: Vec<f64> = (0..2000).map(|k| 0.01 * f64::from(k)).collect();
+        assert!(resolution(&line).abs() < f64::MIN_POSITIVE);
+        let ripple: Vec<f64> = line.iter().map(|x| x + 1e-4 * x.sin()).collect();
+        assert!(resolution(&ripple).abs() < f64::MIN_POSITIVE);
+        let counted: Vec<f64> = line.iter().map(|x| (x / 7e-3).round() * 7e-3).collect();
+        assert!((resolution(&counted) - 7e-3).abs() < 1e-9);
     }
 
     /// Of 2·10⁵ numbers some 2·10⁴ are independent behind the filter: 0.02 is three deviations.

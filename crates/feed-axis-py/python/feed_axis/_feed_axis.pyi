@@ -287,10 +287,10 @@ class Axis:
 
         - `motion`: the duty, as of `simulate`, simulated once and taken as repeated without a pause; all trajectories of the file there and
           back, if neither this nor `logs` is given.
-        - `logs`: the duty from a log or a list of logs: position, and the current or the command of torque or force.
+        - `logs`: the duty from a log or a list of logs: the load's position or the motor's angle, and a torque, force, current or the command of one.
 
         Keys of an item: `name`, `title`, `value`, `limit`, `unit`, `bound` ("at most" or "at least"), `margin` (1 is just kept, below 1 over),
-        `verdict` ("ok", "over", "not known"), `give` (keys that would make it known), `is_unbounded`. What is not known or not finite is None.
+        `verdict` ("ok", "over", "not known"), `give` (keys that would make it known). What is not known is None; what has no bound is `float("inf")`.
 
         Raises MotionError, SimulationError, LogError; AxisError if numbers of `[rating]` contradict each other.
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use axis_sim::rating::AxisDuty;
-use axis_sim::{Axis, MoveSpec, SixDigits};
+use axis_sim::{Axis, LoadSensor, MoveSpec, SixDigits};
 use clap::Args;
 use miette::{IntoDiagnostic, Result, WrapErr};
 
@@ -105,7 +105,12 @@ impl Options {
         let mut notes = Vec::new();
         for path in &self.log {
             let log = read_as_one(path, axis, &[], &mut notes)?;
-            if axis.mechanism.has_motor_encoder() && !log.has("motor_angle_rad") {
+            let shows_motor = ["motor_angle_rad", "motor_speed_rad_s"];
+            let is_load = !matches!(axis.sensors.load, LoadSensor::Missing);
+            if axis.mechanism.has_motor_encoder()
+                && is_load
+                && !shows_motor.iter().any(|c| log.has(c))
+            {
                 notes.push(format!(
                     "{}: no motor_angle_rad, so greatest forces in the transmission are from the load's position: they \
                      come out too low while it swings",
