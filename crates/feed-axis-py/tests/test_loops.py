@@ -99,17 +99,8 @@ def test_a_delay_that_the_file_lacks_is_measured_and_tuned_with(root: Path) -> N
     (found,) = axis.frf(run)
     assert found["comparison"]["delay_s"]["value"] == pytest.approx(3e-4, abs=6e-6)
     assert found["traps"] == [] and found["fit"]["modes"]
-    # The compliance at the load: its peak is that of its lines, and it is the machine's own by the model that knows the delay.
-    compliance = found["compliance"]
-    assert found["compliance_missing"] is None
-    lines = {line["frequency_hz"]: abs(complex(*line["value"])) for line in compliance["lines"]}
-    assert compliance["peak"]["value"] == pytest.approx(max(m for hz, m in lines.items() if 1 <= hz <= 300), rel=1e-9)
-    place = float(np.mean(run["position_m"]))
-    curve = machine.analyse(positions=[place], masses=1.0)["curves"][0]
-    model = np.abs(np.array(curve["compliance"]) @ [1, 1j])
-    of_model = np.interp(list(lines), curve["frequency_hz"], model)
-    near = [m / of for m, of, hz in zip(lines.values(), of_model, lines, strict=True) if 10 <= hz <= 100]
-    assert 0.9 < np.median(near) < 1.1, np.median(near)
+    # A rack's log has the torque that is asked for and not the actual one, of which the compliance would be made.
+    assert found["compliance"] is None and "both the command and the actual" in found["compliance_missing"]
     # As arrays with other names, once more.
     log = {name: run[name] for name in run}
     log["added"] = log.pop("excitation_n_m")

@@ -44,7 +44,7 @@ def test_general_friction_is_the_curve_of_its_keys() -> None:
         fall = np.exp(-((abs(v) / law.stribeck_speed_rad_s) ** 0.7))
         viscous = v * (law.viscous_n_m_s_rad + 2e-4 * abs(v) + 3e-5 * v**2)
         assert law.steady_state(v)[0] == pytest.approx((coulomb + (stiction - coulomb) * fall) * np.sign(v) + viscous, rel=1e-12)
-        assert law.simulate(np.full(20_000, v), 1e-4)[-1] == pytest.approx(law.steady_state(v)[0], rel=1e-9)
+        assert law.simulate(np.full(40_000, v), 1e-4)[-1] == pytest.approx(law.steady_state(v)[0], rel=1e-9)
     with pytest.raises(fa.ParameterError, match=r"`backward.stiction` is 0.1, but must be at least"):
         fa.GeneralLuGre(**shared, stiction_backward_n_m=0.1)
     with pytest.raises(fa.ParameterError, match="stribeck_exponent"):

@@ -4,8 +4,11 @@ use std::path::Path;
 
 use crate::common::{refuse, root, succeed};
 
+/// The bytes of a text.
+type Encoded = fn(&str) -> Vec<u8>;
+
 /// The encodings that are plain by their first bytes.
-fn encodings() -> [(&'static str, fn(&str) -> Vec<u8>); 4] {
+fn encodings() -> [(&'static str, Encoded); 4] {
     let marked = |text: &str| [b"\xef\xbb\xbf", text.as_bytes()].concat();
     let low = |text: &str| -> Vec<u8> {
         let units = format!("\u{feff}{text}");
