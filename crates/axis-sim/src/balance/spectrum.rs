@@ -114,7 +114,8 @@ impl Differences {
         let mut knots = Vec::new();
         let mut k = 0;
         while k < n {
-            let about = k.saturating_sub(SIDE)..(k + SIDE + 1).min(n);
+            let side = SIDE.max((WIDTH * k as f64) as usize);
+            let about = k.saturating_sub(side)..(k + side + 1).min(n);
             let of_noise = |k: usize| noise * self.gain(k as f64 * self.bin);
             let of_noise: f64 = about.clone().map(of_noise).sum();
             let measured: f64 = self.density[about].iter().sum();
@@ -125,7 +126,7 @@ impl Differences {
                 false => 0.0,
             };
             knots.push([k as f64 * self.bin, share]);
-            k += 1 + SIDE / 8;
+            k += 1 + side / 8;
         }
         knots
     }
@@ -198,9 +199,12 @@ pub(super) struct Noise {
     motion: Vec<[f64; 2]>,
 }
 
-/// Bins to either side over which the power is averaged before it is compared with that of noise: a mean of 31 is known to
-/// 18 %. No more, as a ripple at constant speed is a line.
+/// Bins to either side over which the power is averaged at least before it is compared with that of noise: a mean of
+/// 31 is known to 18 %.
 const SIDE: usize = 15;
+
+/// The same as a share of the frequency: a filter whose gain changes by the octave rings for some periods only.
+const WIDTH: f64 = 0.3;
 
 impl Noise {
     /// Of a source sampled every `period` seconds.
