@@ -229,7 +229,7 @@ fn a_log_is_read_as_every_command_reads_it() {
     assert!(message.contains("at least 100 are needed"), "{message}");
 }
 
-/// What has no bound is told from what is not known.
+/// A value without a bound is written otherwise than one that is not known.
 #[test]
 fn an_unbounded_margin_is_a_number_for_python() {
     let found = found(&["--axis", RATED, "--trajectory", "1"]);

@@ -104,9 +104,7 @@ impl Differences {
         let least = medians.iter().copied().fold(f64::INFINITY, f64::min);
         [least, medians.iter().copied().fold(0.0, f64::max)]
     }
-}
 
-impl Differences {
     /// At knots of the frequency, Hz, the share of the power about each that is above noise of this density, 0 to 1, while the
     /// machine moves: for the share `moving` of the time.
     fn above(&self, noise: f64, moving: f64) -> Vec<[f64; 2]> {
@@ -116,12 +114,14 @@ impl Differences {
         while k < n {
             let side = SIDE.max((WIDTH * k as f64) as usize);
             let about = k.saturating_sub(side)..(k + side + 1).min(n);
+            // Of a mean of so many, each with a deviation of its own size.
+            let clear = 1.0 + CLEAR / (about.len() as f64).sqrt();
             let of_noise = |k: usize| noise * self.gain(k as f64 * self.bin);
             let of_noise: f64 = about.clone().map(of_noise).sum();
             let measured: f64 = self.density[about].iter().sum();
             // What moves does so in a part of the time, in which it has more than its mean.
-            let motion = (measured - of_noise).max(0.0);
-            let share = match motion > 0.0 {
+            let motion = measured - of_noise;
+            let share = match measured > clear * of_noise {
                 true => motion / (motion + moving * of_noise),
                 false => 0.0,
             };
@@ -200,11 +200,15 @@ pub(super) struct Noise {
 }
 
 /// Bins to either side over which the power is averaged at least before it is compared with that of noise: a mean of
-/// 31 is known to 18 %.
+/// 31 scatters by 18 %.
 const SIDE: usize = 15;
 
 /// The same as a share of the frequency: a filter whose gain changes by the octave rings for some periods only.
 const WIDTH: f64 = 0.3;
+
+/// Deviations by which a mean power must be above that of noise to be taken for motion: less would let a share of the noise
+/// pass wherever the mean scatters upward.
+const CLEAR: f64 = 3.0;
 
 impl Noise {
     /// Of a source sampled every `period` seconds.
