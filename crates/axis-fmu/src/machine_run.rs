@@ -18,9 +18,6 @@ pub(crate) struct MachineRun<const D: usize> {
     cycles: Vec<Cycle>,
 }
 
-/// Share of the drives' common period in which each begins its first control cycle: there are not so many cycles in one.
-const FIRST: f64 = 1e-4;
-
 impl<const D: usize> MachineRun<D> {
     /// At rest at the references. Drives show what they would sample there.
     pub fn begin(
@@ -33,7 +30,12 @@ impl<const D: usize> MachineRun<D> {
             cycles: Vec::new(),
             machine,
         };
-        run.look(given, FIRST, true)?;
+        // In half a cycle of the fastest drive each has begun its first.
+        let drives = run.machine.machine().drives().iter();
+        let fastest = drives.map(|drive| drive.closed_loop.axis().period);
+        let half = 0.5 * fastest.fold(f64::INFINITY, f64::min);
+        let share = half / run.machine.period();
+        run.look(given, share, true)?;
         Ok(Paced::new(run))
     }
 

@@ -110,12 +110,13 @@ impl<const D: usize> RunningMachine<D> {
         Ok(())
     }
 
-    /// The machine in the period that begins now, after `share` of it (above 0 and up to 1): each drive has begun the control cycles
+    /// The machine in the period that begins now, after `share` of it (above 0 and up to 1, or the nearest to that): each drive has begun the control cycles
     /// that begin before. The run goes on from `self`, not from the result, which may be between two samples.
     ///
     /// # Errors
     /// As [`RunningMachine::advance`].
     pub fn within(&self, given: &[AxisGiven; D], share: f64) -> Result<Self, MachineError> {
+        let share = share.clamp(f64::EPSILON, 1.0);
         let mut there = self.clone();
         there.share = share;
         there.go_on(given, share)?;

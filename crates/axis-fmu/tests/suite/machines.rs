@@ -80,6 +80,13 @@ fn beside<const D: usize>(name: &str) {
     let mut unit = ready(name);
     let starts: [f64; D] =
         std::array::from_fn(|axis| get(&mut unit, &format!("{}.position_ref_m", LETTERS[axis])));
+    // What the drives sample first stands there before any step.
+    for (axis, letter) in LETTERS.iter().enumerate().take(D) {
+        assert_eq!(get(&mut unit, &format!("{letter}.drive.t_s")), 0.0);
+        let first = get(&mut unit, &format!("{letter}.drive.position_m"));
+        assert!((first - starts[axis]).abs() < 1e-5, "{letter}: {first}");
+        assert_ne!(starts[axis], 0.0, "a case that tells nothing");
+    }
     let mut running = RunningMachine::begin(machine.clone(), starts).unwrap();
     let period = unit.period();
     assert_eq!(period, running.period());

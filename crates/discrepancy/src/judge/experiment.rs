@@ -37,8 +37,9 @@ pub struct Proposal {
     pub separation: f64,
 }
 
-/// Fall of D below which a motion separates nothing.
-const SEPARATES: f64 = 25.0;
+/// Evidence, a fall of D, from which on one effect is preferred to another; a motion of which less is to be expected separates
+/// nothing.
+pub(super) const SEPARATES: f64 = 25.0;
 
 /// The motion that best separates the first named effect with a class from
 /// its nearest rival; `None` if no effect has one, where the rival does not run beside what else is

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use trajectories::Program;
 
 use super::assessment::Assessment;
-use super::experiment::Proposal;
+use super::experiment::{Proposal, SEPARATES};
 use super::form::FormFound;
 use super::likeness::Likeness;
 use super::recalibrated::Recalibrated;
@@ -223,20 +223,17 @@ pub struct NextExperiment {
 }
 
 impl NextExperiment {
-    /// Evidence from which on one effect is preferred to another.
-    const DECIDES: f64 = 25.0;
-
     /// What a log of it is worth, as a sentence without its end. Evidence of independent logs adds up.
     #[must_use]
     pub fn said(&self) -> String {
         let expected = format!(
             "The evidence to expect of a log of it is {}, and {} decide",
             said_evidence(self.by),
-            Self::DECIDES
+            SEPARATES
         );
-        let needed = (Self::DECIDES / self.by).ceil();
+        let needed = (SEPARATES / self.by).ceil();
         match needed {
-            _ if self.by >= Self::DECIDES => format!("{expected}: one log is enough"),
+            _ if self.by >= SEPARATES => format!("{expected}: one log is enough"),
             // As many as nobody records.
             _ if needed <= 100.0 => format!("{expected}: {needed} logs are needed"),
             _ => format!("{expected}: logs of it hardly tell the two apart"),

@@ -246,7 +246,7 @@ impl MeasuredDrive {
             false => None,
         };
         let traps = traps::traps(axis, &recorded, &shown, &at, margins.as_ref(), settings)?;
-        // What is wrong anyhow is not explained.
+        // A measurement that is refused is not compared with the model.
         let is_usable = refused(&traps) == 0;
         let fitted = fit_settings(settings, plant.band_hz());
         // Modes are those of the machine, whatever drives it.
