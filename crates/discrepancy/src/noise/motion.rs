@@ -18,13 +18,13 @@ use nalgebra::{Complex, DMatrix};
 use crate::answers::LogSet;
 
 /// Share of the power in a band, on logs that the filters were not found on, from which a residual
-/// follows the motion. Filters found in noise predicts less than nothing: on simulated logs of a
+/// follows the motion. Filters found in noise predict less than nothing: on simulated logs of a
 /// joint −0.04 to 0.02 of it; what a law left out leaves, 0.05 and more.
 const FOLLOWS: f64 = 0.03;
 
-/// Share that filters predicts by chance of a residual whose power is in a single bin, as of a hum:
+/// Share that filters predict by chance of a residual whose power is in a single bin, as of a hum:
 /// any filter
-/// meets it, and half of the phases help. Of more bins it is as much less. Below the second band
+/// fits it, and half of the phases help. Of more bins it is as much less. Below the second band
 /// motion too has its power in few bins.
 const BY_CHANCE: f64 = 0.6;
 
@@ -155,7 +155,7 @@ fn predicted(fit: &Equations, check: &Equations) -> Option<Vec<f64>> {
     Some(shares.collect())
 }
 
-/// The lesser of what either rest's filters predicts of the other; none if one set has too few
+/// The lesser of what either residual's filters predict of the other; none if one set has too few
 /// bins to find any.
 fn predicted_in_both_directions(a: &Equations, b: &Equations) -> Option<Vec<f64>> {
     let pairs = predicted(a, b)?.into_iter().zip(predicted(b, a)?);

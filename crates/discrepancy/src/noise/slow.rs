@@ -4,7 +4,7 @@
 //! where a model lacks what it lacks. Both are told apart by the loop: it answers to all that
 //! is there, and not to what was added behind it. A load that moves makes the controller ask
 //! for current, and the current follows what is asked for. So of the residual's spectral matrix S
-//! in a band, what channel c shows beside what the others predicts,
+//! in a band, what channel c shows beside what the others predict,
 //!
 //! ```text
 //! d(c) = 1 / (S⁻¹)cc − 1 / (N⁻¹)cc,

@@ -33,7 +33,7 @@ pub struct MeasureSettings {
     /// Distance of two lines, Hz, where the excitation is not periodic; none: 1.2 Hz, or a quarter of
     /// the excited time, whichever is coarser. A periodic one has lines of its own.
     pub step_hz: Option<f64>,
-    /// Least coherence of a line that counts.
+    /// Minimum coherence of a line that is used.
     pub coherence: f64,
     /// Most poles of the fit; a mode has two.
     pub most_poles: usize,
@@ -173,7 +173,7 @@ pub struct MeasuredDrive {
     pub averages: f64,
     /// Distance of two lines, Hz.
     pub step_hz: f64,
-    /// Least coherence of a line that counts.
+    /// Minimum coherence of a line that is used.
     pub coherence: f64,
     /// First and last line that counts, Hz; none where there is no such line.
     pub band_hz: Option<[f64; 2]>,

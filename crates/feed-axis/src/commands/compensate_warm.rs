@@ -24,9 +24,9 @@ use crate::progress::bar;
 #[derive(Args)]
 #[group(id = "warm-options")]
 pub(super) struct Options {
-    /// Make the moves cold, and again after so long of them without end, such as 5min 20min 1h, in steps no
-    /// shorter than the moves themselves. The machine warms
-    /// up by the [thermal] of its file; the strategy predicts growth and friction by that of the axis file
+    /// Make the moves cold, and again after repeating them for these times, such as 5min 20min 1h, each at least
+    /// as long as the moves themselves. The machine warms up
+    /// by the [thermal] of its file; the strategy predicts growth and friction by that of the axis file
     #[arg(long, value_name = "TIME", num_args = 1.., value_parser = time, requires = "strategy")]
     after: Vec<f64>,
     /// With --after: temperature of the air, and of the whole axis at the start, °C

@@ -1,4 +1,4 @@
-//! A machine on a path: laps, what lies between the axes, feed against error.
+//! A machine on a path: laps, couplings between the axes, feed against error.
 
 use axis_machine::{
     AxisCoupling, CirclesFound, CoupledMachine, Coupling, DriveSensors, Laps, MachineFile,

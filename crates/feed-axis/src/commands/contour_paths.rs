@@ -67,7 +67,7 @@ pub struct PathOptions {
 /// Options of machines and laps.
 #[derive(Args)]
 pub struct LapOptions {
-    /// Machine file: names the axis files and what lies between them (docs/two-axes.md)
+    /// Machine file: names the axis files and the couplings between them (docs/two-axes.md)
     #[arg(long, value_name = "FILE", conflicts_with_all = ["x", "y"])]
     pub machine: Option<PathBuf>,
     /// Laps one after the other; a compensation that learns goes on from lap to lap
@@ -76,7 +76,7 @@ pub struct LapOptions {
     /// Find squareness and cross-talk from circles at these feeds, m/min: two at least
     #[arg(long, value_name = "M_PER_MIN", num_args = 1.., value_delimiter = ',')]
     pub identify: Vec<f64>,
-    /// Take squareness, straightness and cross-talk off the references: those of the machine file, or found by --identify
+    /// Subtract squareness, straightness and cross-talk errors from the references: those of the machine file, or found by --identify
     #[arg(long)]
     pub correct: bool,
     /// Folder with results of `train` and `identify` of each axis (one folder an axis, by its name), for a compensation that needs them

@@ -36,16 +36,16 @@ pub struct Options {
     /// Set a key of the axis file to another value, such as control.kv_per_s=30 (may be repeated)
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<SetKey>,
-    /// Distance of two lines, Hz [default: those of a periodic excitation, or 1.2]
+    /// Spacing of the frequency lines, Hz [default: those of a periodic excitation, or 1.2]
     #[arg(long, value_name = "HZ")]
     step: Option<f64>,
-    /// Least coherence of a line that counts
+    /// Minimum coherence of a line that is used
     #[arg(long, value_name = "SHARE", default_value_t = 0.9)]
     coherence: f64,
     /// Most poles of the fit; a mode has two
     #[arg(long, value_name = "N", default_value_t = 10)]
     poles: usize,
-    /// Page with Bode's plots of the responses and the model's, coherence, modes and margins
+    /// Page with Bode plots of the responses and the model's, coherence, modes and margins
     #[arg(long, value_name = "OUT.html", value_parser = out_file::page())]
     report: Option<PathBuf>,
 }

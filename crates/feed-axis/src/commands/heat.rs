@@ -27,7 +27,7 @@ use crate::set_key::SetKey;
 /// Options of `heat`.
 #[derive(Args)]
 pub struct Options {
-    /// Axis file; its [thermal] says what is known of the axis' heat, the rest is assumed
+    /// Axis file; its [thermal] has the known thermal values, the others are assumed
     #[arg(long, value_name = "FILE", default_value = DEFAULT_AXIS)]
     axis: PathBuf,
     /// Set a key of the axis file to another value for this run, such as

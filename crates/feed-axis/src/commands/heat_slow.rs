@@ -28,7 +28,7 @@ pub(super) struct Options {
     /// fitted in its [thermal]
     #[arg(long, value_name = "LOG", num_args = 1.., group = LOGS, requires = "out", conflicts_with_all = ["predict", "report"])]
     pub(super) fit: Vec<PathBuf>,
-    /// Predict growth along a log of hours from its reference, beside what was read in it
+    /// Predict growth along a log of hours from its reference, compared with the readings in it
     #[arg(long, value_name = "LOG", group = LOGS, conflicts_with = "report")]
     pub(super) predict: Option<PathBuf>,
     /// Motion programs that the logs' channel duty_1 counts from 1, each repeated [default: the duty of
@@ -53,7 +53,7 @@ pub(super) struct Options {
     /// What readings of a probe count from
     #[arg(long, value_enum, default_value_t = ProbeZero::Begin, requires = LOGS)]
     probe_zero: ProbeZero,
-    /// Set the prediction right by the readings of the log so far apart; the others check it
+    /// Correct the prediction with one reading of the log every so often, such as 10min; the others check it
     #[arg(long, value_name = "TIME", value_parser = time, requires = "predict")]
     pub(super) probe_each: Option<f64>,
     /// When the axis was homed, after the log's begin: growth counts from then [default: at the begin]

@@ -16,7 +16,7 @@ pub struct Options<J: Jobs> {
     /// Accept shards from processors of different instruction sets: last bits may differ
     #[arg(long)]
     any_cpu: bool,
-    /// The command that made the shards, with the same options
+    /// The job whose shards are merged, with the options of the command that made them, but for --shard
     #[command(subcommand)]
     job: J,
 }

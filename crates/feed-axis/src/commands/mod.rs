@@ -94,8 +94,8 @@ pub enum Command<J: Jobs> {
     Frf(frf::Options),
     /// Simulate one motion, write its log and a page of figures
     Simulate(simulate::Options),
-    /// Simulate a machine of two or three axes on a circle or another path: contour error, figures in the manner of ISO
-    /// 230-4, laps
+    /// Simulate a machine of two or three axes on a circle or another path: contour error, figures like those of
+    /// ISO 230-4, laps
     Contour(Box<contour::Options>),
     /// Hours of a duty: temperatures, growth by position and time, thermal force
     Heat(heat::Options),
@@ -112,7 +112,7 @@ pub enum Command<J: Jobs> {
     /// Export a compensation or a model for controllers, drives and other simulators
     #[command(subcommand)]
     Export(export::Export),
-    /// Write the JSON Schema of a file, with which editors complete and check it
+    /// Write the JSON Schema of a file, for completion and checking in editors
     Schema(schema::Options),
 }
 

@@ -64,7 +64,7 @@ pub struct Options {
 pub(super) const NOISE: &str = "Noise of every sensor, added to that of the axis file, in multiples of a good sensor's: scale 10 nm (0.1 µrad if the load turns), motor encoder 2 µrad and 0.01 rad/s, current sensor 1/3000 of the greatest command; 0 for none";
 
 /// What `--exact` is, of every command that has it.
-pub(super) const EXACT: &str = "Simulate by the mechanism's slow, exact method, which is another one than the model's or takes shorter steps: for logs that stand for those of a real machine";
+pub(super) const EXACT: &str = "Simulate by the mechanism's slow, exact method (another method than the model's, or shorter steps): for logs that stand for those of a real machine";
 
 /// Runs the command: the axis file itself is simulated, not its machine.
 pub fn command(options: &Options) -> Result<()> {

@@ -32,7 +32,7 @@ pub struct Options {
     /// repeated); it is written too
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<SetKey>,
-    /// Axis file to write, with the new gains; all else as it was
+    /// Axis file to write, with the new gains; everything else unchanged
     #[arg(long, value_name = "FILE", value_parser = out_file::file())]
     out: PathBuf,
     /// Overwrite an existing file
@@ -46,14 +46,14 @@ pub struct Options {
     /// The same with one more cycle of delay
     #[arg(long, value_name = "MS", default_value_t = 2.0)]
     sensitivity_late: f64,
-    /// Greatest ripple of the command by the steps of the sensor that the speed is derived from, % of
+    /// Limit of the command's ripple caused by the resolution of the speed's sensor, % of
     /// the greatest command (RMS)
     #[arg(long, value_name = "PERCENT", default_value_t = 2.0)]
     ripple: f64,
     /// Leave the acceleration feed-forward as it is
     #[arg(long)]
     no_acceleration: bool,
-    /// Set no notch
+    /// Set no notch filter
     #[arg(long)]
     no_notch: bool,
     /// Set the current controllers too, to the magnitude optimum

@@ -44,7 +44,7 @@ pub struct FitSettings {
     /// Lines from here to there, Hz.
     #[cfg_attr(feature = "serde", serde(with = "crate::stored::band"))]
     pub band_hz: [f64; 2],
-    /// Least coherence of a line that counts.
+    /// Minimum coherence of a line that is used.
     pub coherence: f64,
     /// Most poles, 1 to 16; a mode has two.
     pub most_poles: usize,

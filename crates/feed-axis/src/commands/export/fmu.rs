@@ -47,7 +47,7 @@ pub struct Options {
 }
 
 /// What `--machine` is here.
-const MACHINE: &str = "Machine file of two or three axes on one path: the unit is all of them, and what lies between them. \
+const MACHINE: &str = "Machine file of two or three axes on one path: the unit holds all of them and the couplings between them. \
      With --strategy: axis file of the machine with which the results were made";
 
 /// Versions, as they are asked for.
