@@ -164,14 +164,22 @@ impl Table for CsvTable<'_> {
     }
 
     fn looks_like(&self) -> String {
-        format!("text, {} between fields", self.dialect.separator_in_words())
+        let fields = self.dialect.separator_in_words();
+        let above = match self.dialect.titles().len() {
+            0 => String::new(),
+            1 => ", one line above the names passed over".to_owned(),
+            many => format!(", {many} lines above the names passed over"),
+        };
+        format!("text, {fields} between fields{above}")
     }
 
     fn notes(&self) -> Vec<Note> {
         let columns = self.heads.len();
         let nameless = (!self.dialect.is_named()).then_some(Note::NoNames { columns });
+        let lines = self.dialect.titles().to_vec();
+        let titles = (!lines.is_empty()).then_some(Note::Titles { lines });
         let open = self.text().ends_open().then_some(Note::NoLineEnd);
-        nameless.into_iter().chain(open).collect()
+        nameless.into_iter().chain(titles).chain(open).collect()
     }
 
     /// By their text, so that columns without numbers count too.

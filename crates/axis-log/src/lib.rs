@@ -132,6 +132,8 @@ mod select;
 mod source_unit;
 mod table;
 mod text_dialect;
+mod text_lines;
+mod text_titles;
 #[cfg(feature = "parquet")]
 mod thrift;
 mod unit;

@@ -1,6 +1,8 @@
 //! Which columns of a table become which channels.
 
-use crate::import::stated_unit;
+use std::f64::consts::SQRT_2;
+
+use crate::import::{is_rms, stated_unit};
 use crate::log::TIME_CHANNEL;
 use crate::mapping::{ColumnMap, Mapping};
 use crate::read_error::ReadProblem;
@@ -99,11 +101,16 @@ fn scale_of_file<'a>(channel: &str, head: &'a Head) -> Option<(&'a str, f64)> {
 /// whatever the sign.
 pub(crate) fn other_unit(map: &ColumnMap, head: &Head) -> Option<OtherUnit> {
     let (unit, scale) = scale_of_file(&map.channel, head).filter(|_| map.is_scale_stated)?;
+    // A channel of current is √2 times the RMS value that such a column has.
+    let (unit, scale) = match unit_of(&map.channel) == Some("A") && is_rms(head) {
+        true => (format!("{unit} RMS"), scale * SQRT_2),
+        false => (unit.to_owned(), scale),
+    };
     let differs = (map.scale.abs() / scale - 1.0).abs() > SAME_SCALE;
     differs.then(|| OtherUnit {
         column: head.name.clone(),
         channel: map.channel.clone(),
-        unit: unit.to_owned(),
+        unit,
         scales: [scale, map.scale],
     })
 }

@@ -58,6 +58,8 @@ pub(crate) trait Table {
 pub(crate) enum Note {
     /// Its first row holds numbers, so that its columns have no names.
     NoNames { columns: usize },
+    /// Lines above the names, which are no part of the table.
+    Titles { lines: Vec<String> },
     /// Its last row has no line end.
     NoLineEnd,
     /// Rows that the program left out because nothing changed; values were held.

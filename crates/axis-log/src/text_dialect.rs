@@ -2,25 +2,29 @@
 
 use std::borrow::Cow;
 
-use crate::csv_text::{COMMENT, Text};
+use crate::csv_text::Text;
 use crate::error::CsvProblem;
+use crate::text_lines::{SEPARATORS, count, filled, is_comment, is_number, names_between_blanks};
+use crate::text_titles::without_titles;
 
 /// A whole text, the byte between its fields, and whether its columns have names.
 pub(crate) struct Dialect<'a> {
     text: Cow<'a, str>,
     separator: u8,
     is_named: bool,
+    titles: Vec<String>,
 }
-
-/// What may stand between fields, the surest first: a decimal comma is no separator.
-const SEPARATORS: [u8; 3] = [b';', b'\t', b','];
 
 impl<'a> Dialect<'a> {
     /// Recognised from the names and the first row, or from a line `sep=;` before them.
     pub(crate) fn of(bytes: &'a [u8]) -> Result<Self, CsvProblem> {
         let text = Self::text_of(bytes)?;
         let (text, said) = without_separator_line(text);
-        Ok(Self::told(text, said))
+        let (text, titles) = without_titles(text, said);
+        Ok(Self {
+            titles,
+            ..Self::told(text, said)
+        })
     }
 
     /// The same of a program that always writes this byte between fields.
@@ -61,6 +65,7 @@ impl<'a> Dialect<'a> {
             text,
             separator,
             is_named,
+            titles: Vec::new(),
         }
     }
 
@@ -71,6 +76,11 @@ impl<'a> Dialect<'a> {
     /// Whether the first line holds names, not numbers.
     pub(crate) fn is_named(&self) -> bool {
         self.is_named
+    }
+
+    /// Lines above the names that are no part of the table.
+    pub(crate) fn titles(&self) -> &[String] {
+        &self.titles
     }
 
     /// What stands between fields, in words.
@@ -120,15 +130,6 @@ fn has_names(text: &str, separator: u8) -> bool {
         .filter(|field| !field.is_empty())
         .peekable();
     fields.peek().is_none() || !fields.all(is_number)
-}
-
-/// Lines that hold something, comments or not.
-fn filled(text: &str) -> impl Iterator<Item = &str> {
-    text.lines().filter(|line| !line.trim().is_empty())
-}
-
-fn is_comment(line: &str) -> bool {
-    line.as_bytes().first() == Some(&COMMENT)
 }
 
 /// The first two lines that are no comments: names and a row.
@@ -184,16 +185,6 @@ fn separator(text: &str) -> Option<u8> {
         .or_else(|| [b',', b';', b'\t'].into_iter().find(is_there))
 }
 
-/// How often a byte stands outside of quotes.
-fn count(line: &str, byte: u8) -> usize {
-    let mut quoted = false;
-    let outside = |b: &u8| {
-        quoted ^= *b == b'"';
-        !quoted && *b == byte
-    };
-    line.bytes().filter(outside).count()
-}
-
 /// The names, where names and numbers stand between blanks. A comma behind a word is between
 /// fields.
 fn blank_separated(text: &str) -> Option<Vec<String>> {
@@ -204,39 +195,7 @@ fn blank_separated(text: &str) -> Option<Vec<String>> {
     if row.len() < 2 || !row.iter().copied().all(is_number) || words.any(ends_in_comma) {
         return None;
     }
-    let [single, bracketed, wide] = [
-        names.split_whitespace().map(str::to_owned).collect(),
-        with_brackets(names),
-        apart_by_two(names),
-    ];
-    [single, bracketed, wide]
-        .into_iter()
-        .find(|names: &Vec<String>| names.len() == row.len())
-}
-
-/// Words, a unit in brackets with the one before it.
-fn with_brackets(line: &str) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for word in line.split_whitespace() {
-        match names.last_mut().filter(|_| word.starts_with(['[', '('])) {
-            Some(name) => *name += &format!(" {word}"),
-            None => names.push(word.to_owned()),
-        }
-    }
-    names
-}
-
-/// What stands between two blanks or more.
-fn apart_by_two(line: &str) -> Vec<String> {
-    let names = line
-        .split("  ")
-        .map(str::trim)
-        .filter(|name| !name.is_empty());
-    names.map(str::to_owned).collect()
-}
-
-fn is_number(word: &str) -> bool {
-    word.replace(',', ".").parse::<f64>().is_ok()
+    names_between_blanks(names, row.len())
 }
 
 /// A line with a tab between its words, its end as it was; the first that is no comment has these

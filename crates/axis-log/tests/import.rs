@@ -25,6 +25,7 @@ fn accepted(proposal: &MappingProposal) -> Mapping {
     let columns = proposal.columns.iter().map(|column| {
         let unit = ColumnUnit {
             unit: Some(column.unit),
+            factor: column.factor,
             ..Default::default()
         };
         ColumnMap::in_unit(&column.source, column.channel, unit).unwrap()

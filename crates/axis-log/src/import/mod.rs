@@ -12,9 +12,11 @@ mod names;
 mod numbers;
 mod sinumerik;
 mod sinumerik_trace;
+mod stated;
 mod twincat;
+mod vocabulary;
 
-pub(crate) use by_name::stated_unit;
+pub(crate) use stated::{is_rms, stated_unit};
 
 use std::path::Path;
 
@@ -65,6 +67,7 @@ impl Found {
                 source: head.name.clone(),
                 channel,
                 unit,
+                factor: None,
             },
             is_said: false,
         }
@@ -72,7 +75,7 @@ impl Found {
 }
 
 /// A column that a mapping could have.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ProposedColumn {
     /// Name of the column in the file.
     pub source: String,
@@ -80,10 +83,12 @@ pub struct ProposedColumn {
     pub channel: &'static str,
     /// The unit that it is usually in.
     pub unit: &'static str,
+    /// Factor on top of the unit's, where one is needed: √2 of an RMS value.
+    pub factor: Option<f64>,
 }
 
 /// What the columns of one axis seem to be.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct AxisProposal {
     /// What tells it from the others: a number, or what stands around the names.
     pub axis: String,
@@ -134,9 +139,13 @@ impl AxisProposal {
 
 fn lines(columns: &[ProposedColumn]) -> String {
     let one = |column: &ProposedColumn| {
+        let factor = column.factor.map(|factor| format!("factor = {factor}\n"));
         format!(
-            "[[log.column]]\nsource = {:?}\nchannel = \"{}\"\nunit = \"{}\"\n",
-            column.source, column.channel, column.unit
+            "[[log.column]]\nsource = {:?}\nchannel = \"{}\"\nunit = \"{}\"\n{}",
+            column.source,
+            column.channel,
+            column.unit,
+            factor.unwrap_or_default()
         )
     };
     columns.iter().map(one).collect()
@@ -177,7 +186,7 @@ fn proposal(path: &Path) -> Result<Option<MappingProposal>, ReadProblem> {
 
 /// What the caution of a proposal by names and units alone is.
 const BY_NAME: &str =
-    "a unit that no name states is a guess (mm, mm/s, A, N·m): compare with the numbers";
+    "a unit that no name states is a guess (mm, mm/s, deg, rpm, A, N·m): compare with the numbers";
 
 /// The columns of a table that can be read, as `columns` tells what they are.
 fn proposed(
@@ -189,6 +198,7 @@ fn proposed(
     let readable = |head: &&Head| head.fault.is_none();
     let heads: Vec<&Head> = table.heads().iter().filter(readable).collect();
     let mut found = columns(&heads);
+    let mut remarks = by_name::remarks(&heads);
     let numbers = numbers::checked(&mut *table, &mut found);
     let told = |name: &String| {
         found.iter().any(|found| found.column.source == *name) || crate::unit_of(name).is_some()
@@ -197,6 +207,7 @@ fn proposed(
     let others = names.filter(|name| !told(name)).collect();
     let mut axes = by_axis(&found);
     let first = axes.remove(0);
+    remarks.extend(numbers.remarks);
     MappingProposal {
         format,
         axis: (!axes.is_empty()).then_some(first.axis),
@@ -204,7 +215,7 @@ fn proposed(
         other_axes: axes,
         others,
         caution,
-        remarks: numbers.remarks,
+        remarks,
         rate_hz: numbers.rate_hz,
     }
 }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::error::clip;
 use crate::plus_minus::PlusMinus;
 use crate::table::{Note, OtherUnit};
 use crate::unit::unit_of;
@@ -29,6 +30,13 @@ pub enum Done {
         file: String,
         /// Its columns, which are called `column 1` and so on.
         columns: usize,
+    },
+    /// Lines above the names of a text, which were passed over.
+    Titles {
+        /// The file.
+        file: String,
+        /// The lines.
+        lines: Vec<String>,
     },
     /// A file whose last row has no line end; it was taken as a row.
     NoLineEnd {
@@ -209,6 +217,7 @@ impl Done {
     pub(super) fn of(note: Note, file: String) -> Self {
         match note {
             Note::NoNames { columns } => Self::NoNames { file, columns },
+            Note::Titles { lines } => Self::Titles { file, lines },
             Note::NoLineEnd => Self::NoLineEnd { file },
             Note::Held { rows } => Self::Held { file, rows },
             Note::UnitOfFile { column, unit } => Self::UnitOfFile { file, column, unit },
@@ -229,6 +238,15 @@ impl fmt::Display for Done {
             Self::NoNames { file, columns } => write!(
                 f,
                 "{file}: its first row holds numbers, so it is data and there are no names; the columns are called \"column 1\" to \"column {columns}\""
+            ),
+            Self::Titles { file, lines } => write!(
+                f,
+                "{file}: {} passed over, as the names for its rows stand below: {}",
+                match lines.len() {
+                    1 => "its first line was".to_owned(),
+                    many => format!("its first {many} lines were"),
+                },
+                clip(&lines.join(" | "))
             ),
             Self::NoLineEnd { file } => write!(
                 f,

@@ -35,6 +35,7 @@ impl Given {
         let column = |column: &axis_log::ProposedColumn| {
             let unit = ColumnUnit {
                 unit: Some(column.unit),
+                factor: column.factor,
                 ..Default::default()
             };
             ColumnMap::in_unit(&column.source, column.channel, unit).unwrap()

@@ -28,7 +28,7 @@ mod xml;
 use record::Record;
 
 use super::names::distinct;
-use super::{Format, Found};
+use super::{Format, Found, by_name};
 use crate::log::TIME_CHANNEL;
 use crate::read_error::{Place, ReadProblem};
 use crate::table::{Budget, Fault, Head, Holes, Note, Table};
@@ -56,8 +56,15 @@ fn proposed(heads: &[&Head]) -> Vec<Found> {
     let one = |head: &&Head| {
         let address = head.address.as_deref().unwrap_or_default();
         let is_it = |names: &[&str]| names.iter().any(|name| address.contains(name));
-        let (channel, _, unit) = SIGNALS.iter().find(|(_, names, _)| is_it(names))?;
-        Some(Found::of(axis_of(head), head, channel, unit))
+        let axis = axis_of(head);
+        match SIGNALS.iter().find(|(_, names, _)| is_it(names)) {
+            Some((channel, _, unit)) => Some(Found::of(axis, head, channel, unit)),
+            // What the control calls it in words.
+            None => by_name::motion(head).map(|found| Found {
+                axis: axis.to_owned(),
+                ..found
+            }),
+        }
     };
     heads.iter().filter_map(one).collect()
 }

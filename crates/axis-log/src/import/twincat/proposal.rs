@@ -1,6 +1,6 @@
 //! What channels seem to be, by the names of the NC.
 
-use super::super::Found;
+use super::super::{Found, by_name};
 use crate::table::Head;
 
 /// Variables of an axis, in small letters
@@ -29,6 +29,17 @@ pub(super) fn proposed(heads: &[&Head]) -> Vec<Found> {
         })
     };
     let all: Vec<(usize, Found)> = heads.iter().filter_map(one).collect();
+    if all.is_empty() {
+        // Names that a user gave; those with a variable's name in them are the others beside it.
+        let is_free = |head: &&&Head| {
+            let name = head.name.to_ascii_lowercase();
+            !VARIABLES
+                .iter()
+                .any(|(variable, ..)| name.contains(variable))
+        };
+        let named = heads.iter().filter(is_free);
+        return named.filter_map(|head| by_name::motion(head)).collect();
+    }
     let first = |axis: &str| all.iter().position(|(_, found)| found.axis == axis);
     let mut sorted: Vec<&(usize, Found)> = all.iter().collect();
     sorted.sort_by_key(|(place, found)| (first(&found.axis), *place));

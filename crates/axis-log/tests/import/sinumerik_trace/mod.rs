@@ -52,6 +52,29 @@ fn a_trace_is_read_as_it_is_mapped() {
     assert_eq!(log.missing("position_m").first(), Some(&(0..1)));
 }
 
+/// A signal that no list has is known by what the control calls it; a current's unit is not.
+#[test]
+fn signals_are_known_by_their_words_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = whole();
+    let named = |name: &str| {
+        text.replace("\"Setpoint, axis 1\"", &format!("\"{name}\""))
+            .replace("cmdContrPos", "other")
+    };
+    for (name, channel) in [
+        ("Lagesollwert", Some("position_ref_m")),
+        ("Drehzahlistwert", Some("velocity_rad_s")),
+        ("Stromistwert", None),
+    ] {
+        let path = copy(folder.path(), "trace.xml", named(name));
+        let proposal = propose(&path).unwrap().unwrap();
+        let found = pairs(&proposal)
+            .into_iter()
+            .find(|(source, _)| *source == name);
+        assert_eq!(found.map(|(_, channel)| channel), channel, "{name}");
+    }
+}
+
 /// A value holds until the next one.
 #[test]
 fn an_attribute_that_is_missing_keeps_its_value() {

@@ -229,3 +229,21 @@ fn blank_fields_are_holes() {
         assert_eq!(log.unwrap().log.missing("x_1").len(), 1);
     }
 }
+
+/// Channels that a user named are known by their words; efforts are in a unit of the drive's own.
+#[test]
+fn names_of_a_user_are_known_by_their_words() {
+    let text = export(
+        "Name\tLagesollwert\tName\tLageistwert\tName\tModuloActPos\tName\tMoment",
+        "0\t1\t0\t2\t0\t3\t0\t4\n1\t1\t1\t2\t1\t3\t1\t4\n",
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let path = copy(folder.path(), "x.csv", &text);
+    let proposal = propose(&path).unwrap().unwrap();
+    let expected = [
+        ("Lagesollwert", "position_ref_m"),
+        ("Lageistwert", "position_m"),
+    ];
+    assert_eq!(pairs(&proposal), expected);
+    assert_eq!(proposal.others, ["ModuloActPos", "Moment"]);
+}
