@@ -170,8 +170,12 @@ struct Trial {
 
 impl Trial {
     fn new(seed: u64) -> Self {
+        Self::on(&machines(), 600, seed)
+    }
+
+    fn on(machines: &[Axis], size: usize, seed: u64) -> Self {
         Self {
-            all: cases(&machines(), &MatrixPlan::of(600), seed).unwrap(),
+            all: cases(machines, &MatrixPlan::of(size), seed).unwrap(),
             benches: RefCell::default(),
         }
     }
@@ -251,6 +255,17 @@ fn another_exponent_of_the_fall_is_a_form_and_no_cogging() {
     let outcome = Trial::new(2626).of("p49-clean-3");
     assert_eq!(outcome.verdict, Some(Verdict::OtherForm));
     assert!(outcome.named.is_empty(), "{:?}", outcome.named);
+}
+
+/// A joint of seed 2828 (which served) on which a torque grows with the square of the motor's current, replayed from a
+/// quantised log: a load that repeats and a friction by position imitate it.
+#[test]
+fn a_law_outside_the_library_is_not_named_by_effects_that_imitate_it() {
+    let outcome = Trial::on(&[axis("joint")], 240, 2828).of("p01-outside-0");
+    assert_eq!(outcome.verdict, Some(Verdict::Unknown));
+    assert!(outcome.named.is_empty(), "{:?}", outcome.named);
+    let depends_on = outcome.unknown.unwrap().depends_on;
+    assert_eq!(depends_on, "force or torque of the drive");
 }
 
 /// Torque balances of seeds 1010 and 1111 in which no channel stands out of its noise. Both were refused

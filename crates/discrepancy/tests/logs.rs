@@ -213,6 +213,13 @@ fn a_log_that_starts_in_motion_begins_at_its_first_rest_or_is_refused() {
         error.to_string().contains("record from standstill"),
         "{error}"
     );
+    // Of its first rest the last move is over.
+    let over = log(1.6, 5.0, reference, followed, current);
+    let error = from_rest("drive.csv", over, PERIOD, &machine("liu2025")).unwrap_err();
+    assert!(
+        error.to_string().contains("before its last move"),
+        "{error}"
+    );
     // A rigid machine can begin anywhere.
     let (left, note) = from_rest("drive.csv", cut.clone(), PERIOD, &machine("emps")).unwrap();
     assert_eq!(left.len(), cut.len());

@@ -18,6 +18,8 @@ pub(super) struct Motions {
     pub load_is_derived: bool,
     /// Whether the motor's is what its own encoder shows.
     pub motor_is_measured: bool,
+    /// Whether that encoder was set to the load's position where the log begins; an angle of its own holds the wind-up.
+    pub motor_was_homed: bool,
     /// Where one of the two was measured: what sets the other apart.
     pub wind_up: Option<WindUp>,
 }
@@ -117,8 +119,14 @@ impl Ends {
         let motions = corrected.as_ref().unwrap_or(motions);
         let mut motor = motions.motor.clone();
         let ahead = ahead_at_start(axis, hooks, motions, h);
-        motor.position.iter_mut().for_each(|angle| *angle += ahead);
-        let load = shifted(hooks, motions, &motor, h).unwrap_or_else(|| motions.load.clone());
+        if motions.motor_was_homed {
+            motor.position.iter_mut().for_each(|angle| *angle += ahead);
+        }
+        let mut load = shifted(hooks, motions, &motor, h).unwrap_or_else(|| motions.load.clone());
+        if !motions.motor_was_homed {
+            let behind = ahead * axis.travel_per_radian();
+            load.position.iter_mut().for_each(|x| *x -= behind);
+        }
         let spring = motions.spring(axis);
         let forces = forces(axis, hooks, &load, spring, h);
         let Some(wind_up) = motions.wind_up else {
@@ -198,9 +206,9 @@ pub(super) fn screw_state(load: &Course, motor: &Course, k: usize, h: f64) -> Sc
     }
 }
 
-/// By how much the motor is ahead of an angle that was homed on the load as it stands where the log
-/// begins: the wind-up there, less the error of the transmission's kinematics, rad of the motor. What
-/// repeats with its turn has that much more of a phase.
+/// By how much the motor is ahead of the load where the log begins: the wind-up there, less the error of the
+/// transmission's kinematics, rad of the motor. In an angle that was homed on the load as it stands there,
+/// what repeats with the motor's turn has that much more of a phase; by an angle of the motor's own, the load is that much behind.
 fn ahead_at_start(axis: &Axis, hooks: &Hooks, motions: &Motions, h: f64) -> f64 {
     let Some(wind_up) = motions.wind_up.filter(|_| motions.load_is_derived) else {
         return 0.0;

@@ -35,6 +35,8 @@ struct MotionChannel {
     whose: Whose,
     /// Of that coordinate per unit of the channel.
     scale: f64,
+    /// Whether it is called the load's: the motor's then, it was set to the load's position where the log begins.
+    is_loads: bool,
 }
 
 /// Those of an axis: positions before speeds, the load's before the motor's. Without a sensor at
@@ -49,16 +51,23 @@ fn channels(axis: &Axis) -> Vec<MotionChannel> {
         _ => (Whose::Load, 1.0),
     };
     let all = [
-        (position, Source::Position, of_load, scale),
-        ("motor_angle_rad", Source::Position, Whose::Motor, 1.0),
-        (speed, Source::Speed, of_load, scale),
-        ("motor_speed_rad_s", Source::Speed, Whose::Motor, 1.0),
+        (position, Source::Position, of_load, scale, true),
+        (
+            "motor_angle_rad",
+            Source::Position,
+            Whose::Motor,
+            1.0,
+            false,
+        ),
+        (speed, Source::Speed, of_load, scale, true),
+        ("motor_speed_rad_s", Source::Speed, Whose::Motor, 1.0, false),
     ];
-    all.map(|(name, source, whose, scale)| MotionChannel {
+    all.map(|(name, source, whose, scale, is_loads)| MotionChannel {
         name,
         source,
         whose,
         scale,
+        is_loads,
     })
     .to_vec()
 }
@@ -68,6 +77,8 @@ fn channels(axis: &Axis) -> Vec<MotionChannel> {
 pub(super) struct Measured {
     pub whose: Whose,
     pub name: &'static str,
+    /// Whether the channel is called the load's, whosever it is.
+    pub is_loads: bool,
     source: Source,
     samples: Vec<f64>,
     pub noise: Noise,
@@ -90,6 +101,7 @@ impl Measured {
             found.push(Self {
                 whose: channel.whose,
                 name: channel.name,
+                is_loads: channel.is_loads,
                 source: channel.source,
                 noise: Noise::of(&samples, channel.source, period),
                 samples,

@@ -361,6 +361,7 @@ fn motions(axis: &Axis, measured: &[Measured], period: f64, cutoff: f64) -> Moti
     let (load, motor) = (of(Whose::Load).map(course), of(Whose::Motor).map(course));
     let load_is_derived = load.is_none();
     let motor_is_measured = motor.is_some();
+    let motor_was_homed = of(Whose::Motor).is_some_and(|m| m.is_loads);
     let empty = || Course {
         position: Vec::new(),
         speed: Vec::new(),
@@ -381,6 +382,7 @@ fn motions(axis: &Axis, measured: &[Measured], period: f64, cutoff: f64) -> Moti
         motor,
         load_is_derived,
         motor_is_measured,
+        motor_was_homed,
         wind_up: (measured.len() == 1).then(|| wind_up(axis)).flatten(),
     }
 }

@@ -232,6 +232,25 @@ fn the_wind_up_at_the_start_is_in_an_angle_that_was_homed() {
     assert!(share < 9e-4, "{share}");
 }
 
+/// The motor's own angle holds that wind-up, so the phase of what repeats with its turn is the one of the angle: cogging of
+/// order 6 would otherwise be shifted by a radian.
+#[test]
+fn the_motors_own_angle_has_no_further_wind_up() {
+    let cogging =
+        "\n[[effects]]\nname = \"cogging-torque\"\namplitude = 0.02\norder = 6\nphase = 0.3\n";
+    let mut axis = Axis::parse("joint.toml", &(crate::text("joint.toml") + cogging)).unwrap();
+    axis.sensors = Sensors {
+        load: LoadSensor::Missing,
+        motor: None,
+    };
+    let log = simulated_on(&axis, &back_and_forth(&axis));
+    for other in ["position_rad", "motor_angle_rad"] {
+        let share = unbalanced(&axis, &without(&log, &[other]));
+        println!("without {other}: {share:.2e}");
+        assert!(share < 1e-3, "without {other}: {share}");
+    }
+}
+
 /// The joint's position controller runs at 1 kHz and its speed controller at 4 kHz. A log in
 /// step with the first shows each torque of a period's begin, k_p a (T - T_s) / 2 above the
 /// mean: a share of the inertia that `sampled_inertia` takes, and of which a log at 4 kHz knows

@@ -38,6 +38,15 @@ pub struct Prepared {
     pub hum: Vec<Vec<f64>>,
 }
 
+impl Prepared {
+    /// The highest frequency that it shows, Hz: half its rate, or where a torque balance is low-passed.
+    pub(crate) fn highest_shown(&self) -> f64 {
+        let half = 0.5 / self.period;
+        let balance = self.answer.balance();
+        balance.map_or(half, |balance| half.min(balance.quality().cutoff))
+    }
+}
+
 /// Logs that are compared together.
 #[derive(Clone, Debug)]
 pub struct LogSet {

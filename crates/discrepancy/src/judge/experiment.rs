@@ -21,7 +21,7 @@ use crate::estimate::columns::Columns;
 use crate::estimate::fit::Fitter;
 use crate::estimate::known::known_deviations;
 use crate::name::library::rooms;
-use crate::name::search::Found;
+use crate::name::search::{DECIDES, Found};
 use crate::noise::{LogNoise, noise_on};
 
 /// A motion to run next.
@@ -36,10 +36,6 @@ pub struct Proposal {
     /// Fall of D to be expected between the two.
     pub separation: f64,
 }
-
-/// Evidence, a fall of D, from which on one effect is preferred to another; a motion of which less is to be expected separates
-/// nothing.
-pub(super) const SEPARATES: f64 = 25.0;
 
 /// The motion that best separates the first named effect with a class from
 /// its nearest rival; `None` if no effect has one, where the rival does not run beside what else is
@@ -70,7 +66,7 @@ pub fn propose(machine: &Axis, found: &Found, noise: &LogNoise) -> Option<Propos
             a
         }
     });
-    best.filter(|p| p.separation >= SEPARATES)
+    best.filter(|p| p.separation >= DECIDES)
 }
 
 /// Two explanations of the same logs.

@@ -7,7 +7,7 @@ use super::form::FormFound;
 use super::types::{AtScrew, EffectFound, ParameterFound, RefusedEffects, ReplacedEffect};
 use crate::answers::is_form_of;
 use crate::estimate::columns::free_parameters;
-use crate::name::search::{Found, Named, RefusalReason, Refused, Replaced};
+use crate::name::search::{Found, LawInPlace, Named, RefusalReason, Refused, Replaced};
 
 pub(super) fn effect_found(
     machine: &Axis,
@@ -97,11 +97,11 @@ pub(super) fn refused_effects(refused: &Refused) -> RefusedEffects {
             takes_away: Some(*share),
             ..told
         },
-        RefusalReason::OneLaw(law) => RefusedEffects {
-            law: Some((*law).to_owned()),
-            ..told
-        },
-        RefusalReason::OneCurve(over) => RefusedEffects {
+        RefusalReason::Law { over, law, .. } => RefusedEffects {
+            law: match law {
+                LawInPlace::Term(words) => Some((*words).to_owned()),
+                LawInPlace::Curve { .. } => None,
+            },
             law_over: Some(over.clone()),
             ..told
         },

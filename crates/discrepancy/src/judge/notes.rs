@@ -4,16 +4,40 @@ use axis_log::quality::sample_jitter;
 use axis_sim::effects::Measure;
 use axis_sim::{Axis, ReplayError, Trace};
 
+use super::compared::Compared;
+use super::remainder::Remainder;
 use super::units::{ReadUnit, channel_unit};
 use crate::answers::{LogSet, Prepared, State};
 use crate::name::gap::Gap;
 use crate::name::search::Found;
+use crate::noise::Excess;
 
-/// Notes on the logs.
+/// All notes to a result.
 ///
 /// # Errors
 /// [`ReplayError`] if the machine as its file says does not run the logs.
-pub(super) fn notes(machine: &Axis, found: &Found) -> Result<Vec<String>, ReplayError> {
+pub(super) fn all_notes(
+    compared: &Compared<'_>,
+    remainder: &Remainder<'_>,
+) -> Result<Vec<String>, ReplayError> {
+    let (machine, found, set) = (compared.machine, compared.found, compared.set);
+    let mut all = notes(machine, found)?;
+    all.extend(faster_notes(machine, found, set, &compared.traces));
+    all.extend(compared.slow.notes(set));
+    all.extend(found.hum.notes());
+    let of_loop = compared.left.loop_noise.as_ref();
+    all.extend(of_loop.and_then(|noise| noise.note(machine)));
+    let above = remainder.more_than_noise;
+    all.extend(above.map(|(log, times)| above_noise_note(&found.fit_logs, log, times)));
+    all.extend(remainder.coloured.as_ref().map(Excess::note));
+    if remainder.is_slow_of_loop {
+        all.push(slow_of_loop_note(&remainder.gap));
+    }
+    Ok(all)
+}
+
+/// Notes on the logs.
+fn notes(machine: &Axis, found: &Found) -> Result<Vec<String>, ReplayError> {
     let mut notes: Vec<String> = sets(found).flat_map(|set| set.notes()).collect();
     if !notes.is_empty() {
         notes.push(FLOOR.to_owned());
@@ -103,7 +127,7 @@ fn jitter_notes(set: &LogSet) -> impl Iterator<Item = String> {
 const FLOOR: &str = "the noise stated for a torque balance is a lower bound from the spectra of torque and motion, as no controller is known: a residual above it may still be noise";
 
 /// What must be known of a balance's rest that is taken for noise though it is above its floor.
-pub(super) fn slow_of_loop_note(check: &Gap) -> String {
+fn slow_of_loop_note(check: &Gap) -> String {
     let above = check.channels.iter().filter(|c| c.floor_is_least);
     let times = above.map(|c| c.after / c.floor);
     let times = times.fold(0.0, f64::max);
@@ -113,7 +137,7 @@ pub(super) fn slow_of_loop_note(check: &Gap) -> String {
 }
 
 /// Which log the model does not agree with, where others are at their noise.
-pub(super) fn above_noise_note(set: &LogSet, log: usize, times: f64) -> String {
+fn above_noise_note(set: &LogSet, log: usize, times: f64) -> String {
     let name = set.logs.get(log).map_or("a log", |log| log.name.as_str());
     format!(
         "{name}: the residual is {times:.1} times its noise and no effect explains it, so \"nothing is missing\" is ruled out"
@@ -137,12 +161,7 @@ fn slack_notes(machine: &Axis, found: &Found) -> Vec<String> {
 
 /// Where a log goes faster than those that were fitted to, one way: what is said of that is a
 /// law drawn further than it was seen.
-pub(super) fn faster_notes(
-    machine: &Axis,
-    found: &Found,
-    set: &LogSet,
-    traces: &[Trace],
-) -> Vec<String> {
+fn faster_notes(machine: &Axis, found: &Found, set: &LogSet, traces: &[Trace]) -> Vec<String> {
     let fastest = |traces: &[Trace], way: f64| {
         let speeds = traces.iter().flat_map(|trace| &trace.speed);
         speeds.fold(0.0_f64, |most, v| most.max(way * v))

@@ -3,8 +3,12 @@
 use std::f64::consts::PI;
 
 use axis_log::never_zero;
+use axis_sim::Axis;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+use crate::answers::State;
+use crate::estimate::known::{shown, tolerances};
 
 /// A known parameter that was moved inside its tolerance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -18,6 +22,20 @@ pub struct Recalibrated {
     /// Whether it is an angle.
     #[serde(default)]
     pub is_angle: bool,
+}
+
+/// Those of a machine at a state.
+pub(super) fn recalibrated(machine: &Axis, state: &State) -> Vec<Recalibrated> {
+    let known = machine.known().into_iter().zip(&state.shares);
+    let known = known.zip(tolerances(machine));
+    let known = known.zip(machine.known_angles());
+    let one = |(((name, &share), tolerance), is_angle)| Recalibrated {
+        name: shown(name),
+        share,
+        tolerance,
+        is_angle,
+    };
+    known.map(one).collect()
 }
 
 /// Share of the tolerance from which a parameter is at its edge: fits end just inside.

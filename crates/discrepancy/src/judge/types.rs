@@ -5,14 +5,14 @@ use serde::{Deserialize, Serialize};
 use trajectories::Program;
 
 use super::assessment::Assessment;
-use super::experiment::{Proposal, SEPARATES};
+use super::experiment::Proposal;
 use super::form::FormFound;
 use super::likeness::Likeness;
 use super::recalibrated::Recalibrated;
 use super::unknown::Unknown;
 use crate::answers::LogSet;
 use crate::name::gap::Gap;
-use crate::name::search::Found;
+use crate::name::search::{DECIDES, Found};
 
 /// The verdict on a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -119,13 +119,11 @@ pub struct RefusedEffects {
     /// Share of the gap on check motion that they take away, where that is too little.
     #[serde(default)]
     pub takes_away: Option<f64>,
-    /// The law that explains as much or more, where they are not given for that: a force in
-    /// proportion
-    /// to this, of time t, position x and speed v.
+    /// The law outside the library that is more probable than they are together, if it has a formula: a force in
+    /// proportion to this, of time t, position x and speed v.
     #[serde(default)]
     pub law: Option<String>,
-    /// What a law of any form depends on that is more probable than they are together, where they are not
-    /// named for that.
+    /// What the law outside the library that is more probable than they are together depends on.
     #[serde(default)]
     pub law_over: Option<String>,
 }
@@ -133,9 +131,9 @@ pub struct RefusedEffects {
 impl RefusedEffects {
     /// In a sentence that follows another.
     pub(super) fn sentence(&self) -> String {
-        let (it, they, is, explains) = match self.effects.len() > 1 {
-            true => ("them", "they", "are", "explain"),
-            false => ("it", "it", "is", "explains"),
+        let (it, they, is) = match self.effects.len() > 1 {
+            true => ("them", "they", "are"),
+            false => ("it", "it", "is"),
         };
         let names = match self.effects.as_slice() {
             // Only how the axis' own friction acts was another.
@@ -150,7 +148,7 @@ impl RefusedEffects {
         }
         if let Some(law) = &self.law {
             return format!(
-                " {names} {explains} no more than a force in proportion to {law} does with one number, so {they} {is} not named."
+                " A force in proportion to {law} explains and predicts these logs better than {names}, so {they} {is} not named."
             );
         }
         if let Some(over) = &self.law_over {
@@ -229,11 +227,11 @@ impl NextExperiment {
         let expected = format!(
             "The evidence to expect of a log of it is {}, and {} decide",
             said_evidence(self.by),
-            SEPARATES
+            DECIDES
         );
-        let needed = (SEPARATES / self.by).ceil();
+        let needed = (DECIDES / self.by).ceil();
         match needed {
-            _ if self.by >= SEPARATES => format!("{expected}: one log is enough"),
+            _ if self.by >= DECIDES => format!("{expected}: one log is enough"),
             // As many as nobody records.
             _ if needed <= 100.0 => format!("{expected}: {needed} logs are needed"),
             _ => format!("{expected}: logs of it hardly tell the two apart"),

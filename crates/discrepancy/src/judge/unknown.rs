@@ -8,15 +8,17 @@
 //! fitted as well, is not in the model. The curve with the most is reported,
 //! and a short term that does as much, if there is one. Terms are empirical.
 
+use axis_sim::mechanism::Freedom;
 use axis_sim::{Axis, ReplayError};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::term::{Short, Sought};
-use crate::estimate::fit::Fitter;
-use crate::name::curves::{Place, Rest, Solved};
+use crate::estimate::columns::Columns;
+use crate::estimate::fit::{Fit, Fitter};
+use crate::name::curves::{Beginnings, Over, Place, Rest, Shape, Solved};
 use crate::name::gap::is_material;
-use crate::name::search::{Found, needed};
+use crate::name::search::{Found, LawInPlace, needed};
 use crate::noise::Excess;
 
 /// Something that is in the logs, and neither in the model nor in the library.
@@ -57,100 +59,112 @@ pub struct Curve {
 /// # Errors
 /// [`ReplayError`] if the fitted machine no longer runs the check logs.
 pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unknown>, ReplayError> {
-    let fitter = Fitter {
-        machine,
-        set: &found.fit_logs,
-    };
-    let checker = Fitter {
-        machine,
-        set: &found.check_logs,
-    };
-    let check = checker.at(found.fit.state.clone())?;
-    let curves = &found.library.curves;
+    let [fitter, checker] = [&found.fit_logs, &found.check_logs].map(|set| Fitter { machine, set });
     let rest = Rest::new(&fitter, &found.fit, &found.columns, &found.noise);
-    let layout = &found.fit_logs.layout;
-    let needed = |knots: usize| needed(layout, knots, curves.shapes.len(), 0.01).max(material);
-    let knots = |i: usize| curves.shapes[i].0.knots.len();
-    let solved = curves.shapes.iter().map(|(_, columns)| rest.solve(columns));
-    let mut solved: Vec<(usize, Solved)> = solved.enumerate().collect();
-    solved.retain(|(i, s)| s.gain >= needed(knots(*i)));
-    solved.sort_by(|a, b| b.1.gain.total_cmp(&a.1.gain));
-    let held_out = |i: usize, s: &Solved| -> f64 {
-        let shape = &curves.shapes[i].0;
-        shape.told(machine, &found.check_logs, &check, s.values.as_slice())
-    };
-    // What noise alone brings is not known of a balance, whose runs are its own rest, drawn anew,
-    // with all that it lacks: other logs may say as much as is asked of those that it was fitted
-    // to.
-    let balanced = found.fit_logs.is_balanced();
-    let is_above_noise = |s: &Solved| s.gain >= ABOVE * s.of_noise;
-    let least = |i: usize, s: &Solved| match is_above_noise(s) {
-        true => (0.1 * s.gain).max(25.0),
-        false => needed(knots(i)),
-    };
-    let tried = solved.iter().filter(|(_, s)| balanced || is_above_noise(s));
-    let told = tried.take(TOLD).map(|(i, s)| (*i, s, held_out(*i, s)));
-    let told: Vec<(usize, &Solved, f64)> = told.collect();
-    tracing::debug!(curves = ?told.iter().map(|(i, s, told)| (curves.shapes[*i].0.place, curves.shapes[*i].0.depends_on(), s.gain, s.of_noise, told)).collect::<Vec<_>>(), "what depends on what");
-    // Of those that are significant, the one that tells most of other motion.
-    let holds = told
-        .iter()
-        .filter(|(i, s, told)| *told >= least(*i, s))
-        .copied();
-    let holds: Vec<(usize, &Solved, f64)> = holds.collect();
-    let most = holds.iter().map(|t| t.2).fold(f64::NEG_INFINITY, f64::max);
-    // The simplest of those that tell about as much: they stand in the order of the list.
-    let about = holds.into_iter().filter(|t| t.2 >= ABOUT * most);
-    let first = about.min_by_key(|t| t.0);
+    let check = checker.at(found.fit.state.clone())?;
+    let curves = significant(found, &rest, material);
+    if let Some(said) = in_place([&fitter, &checker], found, &check, &rest) {
+        return Ok(Some(said));
+    }
+    let above_noise = curves.iter().filter(|curve| curve.is_above_noise);
+    let tried = above_noise
+        .take(TOLD)
+        .map(|curve| told(curve, &checker, &check));
+    let tried: Vec<Told<'_>> = tried.collect();
+    let holds = simplest_that_holds(&tried);
     // A short term goes on where the curve ends, and may hold where no curve does.
-    let Some(explains_most) = first.or(told.first().copied()) else {
+    let Some(explains_most) = holds.or(tried.first().copied()) else {
         return Ok(None);
     };
-    // A law that took the place of effects was simulated, and did better than they did.
-    let (place, sought) = match found.law_in_place() {
-        Some(words) => (Place::Force, Sought::Law(words)),
-        None => {
-            let (i, curve, _) = explains_most;
-            (curves.shapes[i].0.place, Sought::AsGoodAs(curve.gain))
-        }
-    };
+    let Significant { shape, solved, .. } = explains_most.curve;
+    let (place, sought) = (shape.place, Sought::AsGoodAs(solved.gain));
     let short = Short::of([&fitter, &checker], found, &check, &rest, place, sought);
-    let set = &found.check_logs;
     let short = short.and_then(|short| {
-        let over = |i: &usize| {
-            let shape = &curves.shapes[*i].0;
-            shape.place == place && (shape.variable, shape.factor) == short.over()
-        };
-        let (i, solution) = solved.iter().find(|(i, _)| over(i))?;
+        let set = checker.set;
         let left = set.amplitudes(short.left());
         let told = set.layout.deviance(&check.rest) - set.layout.deviance(&left);
         tracing::debug!(over = ?short.over(), gain = short.gain(), told, "a short term");
-        (told >= least(*i, solution)).then_some((short, (*i, solution, told)))
+        let curve = curves.iter().find(|c| c.is_over(place, short.over()))?;
+        (told >= curve.least).then_some((short, Told { curve, told }))
     });
     // A term with its one number that does as much as the knots of any curve says better on what it
     // depends.
-    let as_short = short.as_ref().filter(|(short, _)| {
-        matches!(sought, Sought::Law(_)) || first.is_none_or(|first| short.gain() >= first.1.gain)
-    });
-    let (index, solution, told) = match (as_short, first) {
-        (Some((_, of_it)), _) => *of_it,
-        (None, Some(first)) => first,
+    let does_as_much =
+        |(short, _): &&(Short, _)| holds.is_none_or(|h| short.gain() >= h.curve.solved.gain);
+    let as_short = short.as_ref().filter(does_as_much);
+    let (of_it, after) = match (as_short, holds) {
+        (Some((short, of_it)), _) => (*of_it, short.left().clone()),
+        (None, Some(first)) => {
+            let values = first.curve.solved.values.as_slice();
+            let after = (first.curve.shape).rest(machine, checker.set, &check, values)?;
+            (first, after)
+        }
         (None, None) => return Ok(None),
     };
-    let after = match as_short {
-        Some((short, _)) => short.left().clone(),
-        None => (curves.shapes[index].0).rest(machine, set, &check, solution.values.as_slice())?,
-    };
-    if !is_material(machine, set, &check, &after, || None, &[])? {
+    if !is_material(machine, checker.set, &check, &after, || None, &[])? {
         return Ok(None);
     }
-    let (shape, freedom) = (&curves.shapes[index].0, machine.freedom());
     // One over something else says less than the curve, and would contradict it.
-    let short = short.filter(|(_, (of_it, ..))| *of_it == index);
-    Ok(Some(Unknown {
+    let short = short.filter(|(_, short)| short.curve.index == of_it.curve.index);
+    let formula = short.map(|(short, _)| short.formula(machine.freedom()));
+    let Significant { shape, solved, .. } = of_it.curve;
+    let curve = (
+        solved.values.iter().copied().collect(),
+        solved.deviations.clone(),
+    );
+    let evidence = [solved.gain, of_it.told];
+    let said = unknown(shape, machine.freedom(), curve, evidence, formula);
+    Ok(Some(said))
+}
+
+/// The law that took the place of effects, if one did: it was fitted with simulations, and did better than they did.
+fn in_place(
+    logs: [&Fitter<'_>; 2],
+    found: &Found,
+    check: &Fit,
+    rest: &Rest<'_>,
+) -> Option<Unknown> {
+    let (law, evidence) = found.law_in_place()?;
+    let freedom = logs[0].machine.freedom();
+    let curves = &found.library.curves.shapes;
+    match law {
+        LawInPlace::Curve { index, values } => {
+            let (shape, columns) = &curves[*index];
+            let solved = rest.solve(columns);
+            let sought = Sought::AsGoodAs(solved.gain);
+            let short = Short::of(logs, found, check, rest, shape.place, sought);
+            let short = short.filter(|short| short.over() == (shape.variable, shape.factor));
+            let formula = short.map(|short| short.formula(freedom));
+            let curve = (values.clone(), solved.deviations);
+            Some(unknown(shape, freedom, curve, evidence, formula))
+        }
+        LawInPlace::Term(words) => {
+            let (force, sought) = (Place::Force, Sought::Law(words));
+            let short = Short::of(logs, found, check, rest, force, sought)?;
+            let is_over = |shape: &Shape| {
+                shape.place == force && (shape.variable, shape.factor) == short.over()
+            };
+            let (shape, columns) = curves.iter().find(|(shape, _)| is_over(shape))?;
+            let solved = rest.solve(columns);
+            let curve = (solved.values.iter().copied().collect(), solved.deviations);
+            let formula = Some(short.formula(freedom));
+            Some(unknown(shape, freedom, curve, evidence, formula))
+        }
+    }
+}
+
+/// A curve with its values, their standard deviations and its formula as what has no name.
+fn unknown(
+    shape: &Shape,
+    freedom: Freedom,
+    (value, deviations): (Vec<f64>, Vec<f64>),
+    evidence: [f64; 2],
+    formula: Option<String>,
+) -> Unknown {
+    Unknown {
         channel: shape.place.name().to_owned(),
         depends_on: shape.depends_on(),
-        formula: short.map(|(short, _)| short.formula(freedom)),
+        formula,
         curve: Curve {
             variable: format!(
                 "{}, {}",
@@ -159,11 +173,84 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
             ),
             unit: shape.unit(freedom).to_owned(),
             at: shape.knots.clone(),
-            value: solution.values.iter().copied().collect(),
-            within: solution.deviations.iter().map(|d| 1.96 * d).collect(),
+            value,
+            within: deviations.iter().map(|d| 1.96 * d).collect(),
         },
-        evidence: [solution.gain, told],
-    }))
+        evidence,
+    }
+}
+
+/// A curve that is significant on the fitted logs.
+struct Significant<'a> {
+    /// Its place in the list of curves, the simplest first.
+    index: usize,
+    shape: &'a Shape,
+    solved: Solved,
+    /// Fall of D of the check logs that is asked of it.
+    least: f64,
+    /// Whether it explains more of the fitted logs than noise would, if that is known.
+    is_above_noise: bool,
+}
+
+impl Significant<'_> {
+    fn is_over(&self, place: Place, over: Over) -> bool {
+        self.shape.place == place && (self.shape.variable, self.shape.factor) == over
+    }
+}
+
+/// A curve, and the fall of D of the check logs with it.
+#[derive(Clone, Copy)]
+struct Told<'a> {
+    curve: &'a Significant<'a>,
+    told: f64,
+}
+
+/// The curves that are significant on the fitted logs, those that explain most first.
+fn significant<'a>(found: &'a Found, rest: &Rest<'_>, material: f64) -> Vec<Significant<'a>> {
+    let curves = &found.library.curves.shapes;
+    let layout = &found.fit_logs.layout;
+    let one = |(index, (shape, columns)): (usize, &'a (Shape, Columns))| {
+        let solved = rest.solve(columns);
+        let needed = needed(layout, shape.knots.len(), curves.len(), 0.01).max(material);
+        let is_above_noise = solved.gain >= ABOVE * solved.of_noise;
+        // What noise alone brings is not known of a balance, whose runs are its own rest, drawn anew,
+        // with all that it lacks: other logs may say as much as is asked of those that it was fitted
+        // to.
+        let least = match is_above_noise {
+            true => (0.1 * solved.gain).max(25.0),
+            false => needed,
+        };
+        let is_above_noise = is_above_noise || found.fit_logs.is_balanced();
+        (solved.gain >= needed).then_some(Significant {
+            index,
+            shape,
+            solved,
+            least,
+            is_above_noise,
+        })
+    };
+    let mut all: Vec<Significant<'a>> = curves.iter().enumerate().filter_map(one).collect();
+    all.sort_by(|a, b| b.solved.gain.total_cmp(&a.solved.gain));
+    all
+}
+
+/// One of them on the check logs.
+fn told<'a>(curve: &'a Significant<'a>, checker: &Fitter<'_>, check: &Fit) -> Told<'a> {
+    let (values, begins) = (curve.solved.values.as_slice(), Beginnings::default());
+    let told = curve.shape.told(checker, check, values, &begins);
+    tracing::debug!(place = ?curve.shape.place, over = curve.shape.depends_on(), gain = curve.solved.gain, of_noise = curve.solved.of_noise, told, "what depends on what");
+    Told { curve, told }
+}
+
+/// Of those that hold on the check logs, the simplest of those that tell about as much as the best.
+fn simplest_that_holds<'a>(tried: &[Told<'a>]) -> Option<Told<'a>> {
+    let holds = tried.iter().filter(|t| t.told >= t.curve.least);
+    let most = holds
+        .clone()
+        .map(|t| t.told)
+        .fold(f64::NEG_INFINITY, f64::max);
+    let about = holds.filter(|t| t.told >= ABOUT * most);
+    about.min_by_key(|t| t.curve.index).copied()
 }
 
 /// Curves of which it is seen how much they tell of other motion.

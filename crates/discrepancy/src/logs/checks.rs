@@ -66,19 +66,19 @@ pub fn check_log(file: &str, log: &Log, machine: &Axis) -> Result<f64, LogSetErr
     Ok(sampling.period)
 }
 
+/// Way of a reference below which it does not move, m or rad.
+pub(super) const LEAST_WAY: f64 = 1e-4;
+
+/// How far a reference goes forward and back in all, m or rad.
+pub(super) fn moved(reference: &[f64]) -> [f64; 2] {
+    let steps = reference.windows(2).map(|w| w[1] - w[0]);
+    let way = |sign: f64| steps.clone().map(|d| (d * sign).max(0.0)).sum();
+    [way(1.0), way(-1.0)]
+}
+
 /// Dry friction and a constant load look alike where the axis goes one way only.
 fn moves_both_ways(file: &str, reference: &[f64]) -> Result<(), LogSetError> {
-    let step = |w: &[f64]| w[1] - w[0];
-    let moved = |sign: f64| {
-        reference
-            .windows(2)
-            .map(step)
-            .filter(|d| d * sign > 0.0)
-            .sum::<f64>()
-            .abs()
-    };
-    let (forward, back) = (moved(1.0), moved(-1.0));
-    let missing = match (forward > 1e-4, back > 1e-4) {
+    let missing = match moved(reference).map(|way| way > LEAST_WAY).into() {
         (true, true) => return Ok(()),
         (false, false) => "the reference moves by less than 0.1 mm",
         _ => {

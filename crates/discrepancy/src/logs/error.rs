@@ -133,9 +133,9 @@ pub enum LogSetError {
         /// What it lacks.
         missing: &'static str,
     },
-    /// It never stands still, so a simulation cannot begin like it.
+    /// It does not stand still before its last move, so a simulation cannot begin like it.
     #[error(
-        "{file}: starts in motion, at {speed:.4} m/s, and never stands still for {REST_TIME} s: the log does not show the loop's state at its start; record from standstill"
+        "{file}: starts in motion, at {speed:.4} m/s, and does not stand still for {REST_TIME} s (reference, position and motor) before its last move: the log does not show the loop's state at its start; record from standstill, or pause for half a second"
     )]
     NeverRests {
         /// The log.

@@ -3,6 +3,7 @@
 use axis_log::Log;
 use axis_sim::{Axis, reference_in};
 
+use super::checks::{LEAST_WAY, moved};
 use super::error::LogSetError;
 use super::standstill::{AT_REST, Standstill};
 
@@ -40,7 +41,6 @@ pub fn from_rest(
         return Ok((log, Some(words)));
     }
     let standstill = Standstill::of(&log, period, machine);
-    // So late that nothing follows is as good as never.
     let left = standstill.ok().and_then(|standstill| {
         let half = standstill.length / 2;
         let first = *standstill.starts.first()?;
@@ -49,6 +49,9 @@ pub fn from_rest(
         let steps = reference[middle..].windows(2);
         let still = steps.take_while(|w| (w[1] - w[0]).abs() <= AT_REST * period);
         let at = middle.max((middle + still.count()).saturating_sub(half));
+        // So late that no move follows is as good as never.
+        let moved = moved(&reference[at..]);
+        moved.iter().any(|way| *way > LEAST_WAY).then_some(())?;
         Some((at, log.skip(at).ok()?))
     });
     match left {

@@ -10,7 +10,7 @@ use axis_sim::effects::{
 };
 use axis_sim::{Probe, SetupError};
 
-use super::curves::{Course, Factor, Over, Place, STANDS, Variable};
+use super::curves::{Course, Factor, Over, Place, STANDS, Variable, depends_on};
 
 /// Of time (s), place (m), speed (m/s) and direction (−1 to 1).
 type Value = fn(f64, f64, f64, f64) -> f64;
@@ -136,6 +136,11 @@ pub fn middle(courses: &[Course]) -> f64 {
 }
 
 impl Term {
+    /// On what it depends, in words.
+    pub fn depends_on(&self) -> String {
+        depends_on(self.over)
+    }
+
     /// Its course on these motions, and that of what it is taken with: one series a log, each.
     pub fn series(&self, courses: &[Course], middle: f64) -> Vec<Vec<Vec<f64>>> {
         let one = |value: Value| {
@@ -251,11 +256,6 @@ impl Term {
     pub fn factor(active: &ActiveEffect) -> [f64; 2] {
         let [most, size] = [active.values[FIRST], active.values[FIRST + 1]];
         [size / most, 1.0 / most]
-    }
-
-    /// Whether its own number is all that it has.
-    pub fn has_one_number(&self) -> bool {
-        self.beside.is_none()
     }
 }
 

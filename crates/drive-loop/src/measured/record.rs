@@ -44,24 +44,38 @@ pub(crate) struct Recorded<'a> {
     pub notes: Vec<String>,
 }
 
+/// The period of a log whose samples are even.
+fn even_period(time: &[f64]) -> Result<f64, LoopError> {
+    let n = time.len();
+    if n < 64 {
+        return Err(LoopError::Log(format!(
+            "it has {n} samples; valid: 64 at least, and some seconds of a slide"
+        )));
+    }
+    let period = (time[n - 1] - time[0]) / (n - 1) as f64;
+    let off = |w: &[f64]| ((w[1] - w[0]) / period - 1.0).abs() > GAP;
+    match time.windows(2).position(off) {
+        Some(i) => Err(LoopError::Log(format!(
+            "its samples are not evenly spaced at {} s; valid: one period throughout",
+            axis_sim::SixDigits(time[i])
+        ))),
+        None => Ok(period),
+    }
+}
+
+/// Says that samples of a channel are missing.
+fn holes(log: &Log, name: &str) -> Option<String> {
+    let missing: usize = log.missing(name).iter().map(|range| range.len()).sum();
+    (missing > 0).then(|| {
+        format!(
+            "{missing} samples of {name} were not measured: straight lines stand in their place"
+        )
+    })
+}
+
 impl<'a> Recorded<'a> {
     pub fn of(axis: &Axis, log: &'a Log) -> Result<Self, LoopError> {
-        let time = log.time();
-        let n = time.len();
-        if n < 64 {
-            return Err(LoopError::Log(format!(
-                "it has {n} samples; valid: 64 at least, and some seconds of a slide"
-            )));
-        }
-        let period = (time[n - 1] - time[0]) / (n - 1) as f64;
-        let off = |w: &[f64]| ((w[1] - w[0]) / period - 1.0).abs() > GAP;
-        if let Some(i) = time.windows(2).position(off) {
-            return Err(LoopError::Log(format!(
-                "its samples are not evenly spaced at {} s; valid: one period throughout",
-                axis_sim::SixDigits(time[i])
-            )));
-        }
-        let mut notes = Vec::new();
+        let period = even_period(log.time())?;
         let (names, command_unit) = match axis.actuator.effort() {
             Effort::Current => (["iq_ref_a", "iq_a"], "A"),
             Effort::Torque => (["torque_ref_n_m", "torque_n_m"], "N·m"),
@@ -80,26 +94,20 @@ impl<'a> Recorded<'a> {
         // loop counts by itself: the angle shows the motor then.
         let is_held = axis.control.speed_every(axis.period) > 1 && angle.is_some();
         let speed = log.channel("motor_speed_rad_s").ok().filter(|_| !is_held);
-        for name in [
+        let read = [
             name,
             "motor_speed_rad_s",
             "motor_angle_rad",
             axis.position_channel(),
-        ] {
-            let missing: usize = log.missing(name).iter().map(|range| range.len()).sum();
-            if missing > 0 {
-                notes.push(format!(
-                    "{missing} samples of {name} were not measured: straight lines stand in their place"
-                ));
-            }
-        }
+        ];
+        let notes = read.iter().filter_map(|name| holes(log, name)).collect();
         let excitation = excitation_in(log);
         let windows = match excitation {
             Some(r) => windows(r),
             None => Vec::new(),
         };
         let (windows, excitation) = match windows.is_empty() {
-            true => (vec![[0, n]], None),
+            true => (vec![[0, load.len()]], None),
             false => (windows, excitation),
         };
         let inside = || windows.iter().flat_map(|[from, to]| &load[*from..*to]);

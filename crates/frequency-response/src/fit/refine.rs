@@ -154,6 +154,7 @@ pub(crate) struct Described {
 
 impl Described {
     /// Modes, poles and delay as numbers, without their deviations.
+    #[cfg(feature = "serde")]
     pub fn numbers(modes: &[FittedMode], poles: &[FittedPole], delay: &Uncertain) -> Vec<f64> {
         let of_mode = |mode: &FittedMode| {
             let (frequency, damping) = (mode.frequency_hz.value, mode.damping.value);

@@ -312,7 +312,7 @@ fn nothing_and_the_unknown_are_said_so() {
 }
 
 #[test]
-fn pieces_of_one_law_are_said_beside_what_is_named() {
+fn effects_that_imitate_a_law_are_said_beside_what_is_named() {
     let refused = |effects: &[&str]| RefusedEffects {
         effects: effects.iter().map(|name| (*name).to_owned()).collect(),
         law: Some("|v|·v".to_owned()),
@@ -322,7 +322,7 @@ fn pieces_of_one_law_are_said_beside_what_is_named() {
     made.refused = Some(refused(&["coulomb-friction", "stribeck-friction"]));
     assert_eq!(
         lines(&made, "What is missing")[1],
-        "coulomb-friction with stribeck-friction explain no more than a force in proportion to |v|·v does with one number, so they are not named."
+        "A force in proportion to |v|·v explains and predicts these logs better than coulomb-friction with stribeck-friction, so they are not named."
     );
     made.refused = Some(refused(&["coulomb-friction"]));
     assert!(lines(&made, "What is missing")[1].ends_with("so it is not named."));

@@ -1,5 +1,6 @@
 //! Curves over variables of the motion, and the loop's answers to them.
 
+mod beginnings;
 mod course;
 mod rest;
 mod shape;
@@ -8,10 +9,11 @@ mod variable;
 use axis_sim::{Axis, Probe};
 use rayon::prelude::*;
 
+pub use self::beginnings::Beginnings;
 pub use self::course::{Course, STANDS, angles, courses, slope};
 pub use self::rest::{Rest, Solved};
 pub use self::shape::Shape;
-pub use self::variable::{Factor, Over, Place, Variable, is_over};
+pub use self::variable::{Factor, Over, Place, Variable, depends_on};
 use crate::answers::LogSet;
 use crate::estimate::columns::Columns;
 use crate::estimate::fit::{Fit, Fitter};
@@ -57,7 +59,7 @@ impl Curves {
             .collect();
         let fitter = Fitter { machine, set };
         let answers = |shape: Shape| {
-            let columns = shape.columns_on(&fitter, fit, &courses);
+            let columns = shape.columns(&fitter, fit, &courses);
             (shape, columns)
         };
         Self {

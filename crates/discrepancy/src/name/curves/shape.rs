@@ -1,14 +1,15 @@
 //! A curve over a variable: hat functions, and what they do to logs.
 
-use axis_sim::effects::{EffectVariable, Measure};
+use axis_sim::effects::Measure;
 use axis_sim::mechanism::Freedom;
 use axis_sim::{Axis, Probe, ReplayError};
 
 use rayon::prelude::*;
 
 use super::answer;
+use super::beginnings::Beginnings;
 use super::course::{Course, STANDS, courses};
-use super::variable::{Factor, Place, Variable, is_over};
+use super::variable::{Factor, Place, Variable, depends_on};
 use crate::answers::{self, LogSet};
 use crate::estimate::columns::Columns;
 use crate::estimate::fit::{Fit, Fitter};
@@ -64,11 +65,6 @@ impl Shape {
         }
     }
 
-    /// Whether it is over what an effect is shown over, or over a product with it.
-    pub fn is_over(&self, variable: EffectVariable) -> bool {
-        is_over((self.variable, self.factor), variable)
-    }
-
     /// The residual on logs of which this is the fit with these values at the knots.
     ///
     /// # Errors
@@ -98,23 +94,31 @@ impl Shape {
     /// Fall of D on logs that were not fitted, of which this is the fit, with these values at
     /// the knots; nothing if it does not run. Motion beyond the outermost knots does not
     /// count: nothing tells how the curve goes on there.
-    pub fn told(&self, machine: &Axis, set: &LogSet, fit: &Fit, values: &[f64]) -> f64 {
-        let Ok(mut after) = self.rest(machine, set, fit, values) else {
+    pub fn told(
+        &self,
+        checker: &Fitter<'_>,
+        fit: &Fit,
+        values: &[f64],
+        begins: &Beginnings,
+    ) -> f64 {
+        let Ok(mut after) = self.rest(checker.machine, checker.set, fit, values) else {
             return f64::NEG_INFINITY;
         };
-        let mut before = set.rest(&fit.traces);
-        self.fall_inside(machine, set, fit, [&mut before, &mut after])
+        let mut before = checker.set.rest(&fit.traces);
+        self.fall_inside(checker, fit, [&mut before, &mut after], begins)
     }
 
-    /// Fall of D from one residual to another where motion is within the outermost knots.
+    /// Fall of D from one residual to another where motion is within the outermost knots, beside what is not
+    /// known of the beginnings of the logs.
     pub fn fall_inside(
         &self,
-        machine: &Axis,
-        set: &LogSet,
+        checker: &Fitter<'_>,
         fit: &Fit,
         [before, after]: [&mut answers::Rest; 2],
+        begins: &Beginnings,
     ) -> f64 {
-        let inside: Vec<Vec<bool>> = (courses(machine, set, &fit.traces).iter())
+        let set = checker.set;
+        let inside: Vec<Vec<bool>> = (courses(checker.machine, set, &fit.traces).iter())
             .map(|course| self.inside(course))
             .collect();
         let all = inside.iter().flatten();
@@ -126,7 +130,8 @@ impl Shape {
                     beyond.for_each(|(r, _)| *r = 0.0);
                 }
             }
-            set.layout.deviance(&set.amplitudes(rest))
+            let left = begins.taken_out(&set.layout, set.amplitudes(rest));
+            set.layout.deviance(&left)
         });
         // As many independent values as count.
         (before - after) * counted as f64 / samples.max(1) as f64
@@ -151,14 +156,8 @@ impl Shape {
             .collect()
     }
 
-    /// What each of its hats does to the logs of a fit.
-    pub fn columns(&self, fitter: &Fitter<'_>, fit: &Fit) -> Columns {
-        let courses = courses(fitter.machine, fitter.set, &fit.traces);
-        self.columns_on(fitter, fit, &courses)
-    }
-
-    /// The same on these courses of its motion.
-    pub(super) fn columns_on(&self, fitter: &Fitter<'_>, fit: &Fit, courses: &[Course]) -> Columns {
+    /// What each of its hats does to the logs of a fit, on the courses of its motion.
+    pub(super) fn columns(&self, fitter: &Fitter<'_>, fit: &Fit, courses: &[Course]) -> Columns {
         let column = |j: usize| {
             let series = courses.iter().map(|c| self.hat(j, c)).collect();
             answer(fitter, fit, self.place, series)
@@ -168,11 +167,7 @@ impl Shape {
 
     /// On what it depends, in words.
     pub fn depends_on(&self) -> String {
-        match self.factor {
-            Factor::One => self.variable.name().to_owned(),
-            Factor::Speed => format!("the product of speed and {}", self.variable.name()),
-            Factor::Direction => format!("{} and the direction of motion", self.variable.name()),
-        }
+        depends_on((self.variable, self.factor))
     }
 
     /// Unit of its values.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use axis_sim::Probe;
-use axis_sim::effects::{EffectVariable, Measure};
+use axis_sim::effects::Measure;
 use axis_sim::mechanism::Freedom;
 
 /// Where a disturbance acts.
@@ -86,14 +86,11 @@ pub enum Factor {
 /// On what a law depends.
 pub type Over = (Variable, Factor);
 
-/// Whether that is what an effect is shown over, or a product with it.
-pub fn is_over((own, factor): Over, variable: EffectVariable) -> bool {
-    match variable {
-        EffectVariable::Speed => own == Variable::Speed || factor != Factor::One,
-        EffectVariable::Position => own == Variable::Position,
-        EffectVariable::MotorAngle => own == Variable::Angle,
-        EffectVariable::Acceleration => own == Variable::Acceleration,
-        EffectVariable::Current => own == Variable::Effort,
-        EffectVariable::Distance | EffectVariable::Time => own == Variable::Time,
+/// That in words.
+pub fn depends_on((variable, factor): Over) -> String {
+    match factor {
+        Factor::One => variable.name().to_owned(),
+        Factor::Speed => format!("the product of speed and {}", variable.name()),
+        Factor::Direction => format!("{} and the direction of motion", variable.name()),
     }
 }

@@ -4,6 +4,9 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::spectrum::Layout;
 
+/// Evidence, a fall of D, from which on one explanation is preferred to another: odds of e^12.5.
+pub const DECIDES: f64 = 25.0;
+
 /// Least evidence of a further effect, as a share of the largest so far.
 pub const MATERIAL: f64 = 0.01;
 

@@ -3,13 +3,12 @@
 mod evidence;
 mod force;
 mod form;
-mod free_curve;
+mod imitation;
 mod intervals;
 mod is_form;
+mod laws;
 mod lines;
 mod look_alikes;
-mod one_curve;
-mod one_law;
 mod promise;
 mod refined;
 mod refusal;
@@ -26,13 +25,14 @@ use std::sync::Arc;
 
 use axis_sim::{Axis, ReplayError};
 
-pub use self::evidence::{MATERIAL, needed};
+pub use self::evidence::{DECIDES, MATERIAL, needed};
+use self::intervals::Intervals;
 pub(crate) use self::is_form::is_form;
 pub(crate) use self::revise::ABOVE_NOISE;
 use self::state::{ANEW, Search, steady_noise, steady_noise_beside};
 pub use self::types::{
-    Alike, Found, Named, ONE_CLASS, RefusalReason, Refused, Replaced, RunnerUp, SearchError,
-    Settings, SettingsError, Test,
+    Alike, Found, LawInPlace, Named, ONE_CLASS, RefusalReason, Refused, Replaced, RunnerUp,
+    SearchError, Settings, SettingsError, Test,
 };
 use crate::answers::{LogSet, State};
 use crate::estimate::columns::Columns;
@@ -94,79 +94,13 @@ fn searched(
     mut progress: impl FnMut(&str),
 ) -> Result<Found, ReplayError> {
     progress("known parameters");
-    let fitter = Fitter {
-        machine,
-        set: fit_logs,
-    };
-    let start = fitter.at(State::initial(machine))?;
     let nominal = library.as_ref().map(|l| l.known.clone());
-    let nominal = nominal.unwrap_or_else(|| fitter.known_columns(&start));
-    let (mut base, mut known) = calibrated(&fitter, start, nominal);
-    // Defects and starts by the machine with its parameters as they were fitted.
-    let as_filed = check_logs;
-    let (mut fit_logs, mut check_logs) = (fit_logs.clone(), check_logs.clone());
-    for _ in 0..SETTLINGS {
-        let mut begins_elsewhere = false;
-        if let Some(settled) = settled(machine, &fit_logs, &check_logs, &base, &known) {
-            begins_elsewhere = settled.0.begins_elsewhere(&fit_logs, machine);
-            (fit_logs, check_logs) = settled;
-        }
-        let fitter = Fitter {
-            machine,
-            set: &fit_logs,
-        };
-        (base, known) = fitter.calibrated(fitter.at(base.state)?, known);
-        // What was fitted beside another start may have made up for it.
-        if !begins_elsewhere {
-            break;
-        }
-    }
-    let checks = check_logs.simulate(machine, &base.state)?;
-    let hum = Hum::of(
-        (&fit_logs, &base.traces),
-        (&check_logs, &checks),
-        &Hum::default(),
-    );
-    if !hum.is_none() {
-        fit_logs = hum.taken_out(&fit_logs, &base.traces);
-        check_logs = hum.taken_out(&check_logs, &checks);
-        let fitter = Fitter {
-            machine,
-            set: &fit_logs,
-        };
-        (base, known) = calibrated(&fitter, fitter.at(base.state)?, known);
-    }
-    let fitter = Fitter {
-        machine,
-        set: &fit_logs,
-    };
+    let begun = Begun::new(machine, [fit_logs, check_logs], nominal)?;
     let library = library.unwrap_or_else(|| {
         progress("screening all effects");
-        Arc::new(Library::new(&fitter, &base, known.clone()))
+        begun.library(machine)
     });
-    let checker = Fitter {
-        machine,
-        set: &check_logs,
-    };
-    let check = checker.at(base.state.clone())?;
-    let mut search = Search {
-        machine,
-        settings,
-        library,
-        gap_before: sizes(&check_logs, &check_logs.rest(&check.traces)),
-        check,
-        steady: steady_noise_beside(&fitter, &base),
-        fit: base.clone(),
-        known,
-        named: Vec::new(),
-        replaced: Vec::new(),
-        leftover: Vec::new(),
-        refused: None,
-        unseen: Vec::new(),
-        hum,
-        fit_logs,
-        check_logs,
-    };
+    let mut search = begun.search(machine, settings, library)?;
     let without = search.clone();
     while search.effects_named() < settings.most_effects {
         progress(&format!("effect {}", search.effects_named() + 1));
@@ -179,31 +113,165 @@ fn searched(
         _ => search.revise(),
     }
     progress("intervals");
-    let mut intervals = search.intervals()?;
-    while search.drop_noise(&intervals) || search.drop_undetermined(&intervals) {
-        // What was named together with it may be nothing without it.
-        search.revise();
-        intervals = search.intervals()?;
-    }
-    for instead in [Search::without_pieces, Search::without_imitations] {
-        let Some(other) = instead(&search) else {
-            continue;
-        };
-        search = match (other.named.is_empty(), &other.refused) {
-            (true, Some(refused)) => without.clone().with_refused(refused.clone()),
-            _ => other,
-        };
-        intervals = search.intervals()?;
-    }
-    if let Some(refused) = search.refused(as_filed, &without)? {
-        search = without.with_refused(refused);
-        intervals = search.intervals()?;
-    } else if search.lacks_evidence(&without)? {
-        search = without.with_leftover(&search.named);
-        intervals = search.intervals()?;
-    }
+    let (mut search, intervals) = search.tested(&without, check_logs)?;
     search.find_look_alikes();
-    Ok(search.finish(base, intervals))
+    Ok(search.finish(without.fit, intervals))
+}
+
+/// Logs with what is known of them, and known parameters fitted to them, before anything is named.
+struct Begun {
+    fit_logs: LogSet,
+    check_logs: LogSet,
+    fit: Fit,
+    known: Columns,
+    hum: Hum,
+}
+
+impl Begun {
+    /// From the logs as they were read, and the derivatives of the known parameters at the file's values where they are
+    /// there already.
+    fn new(
+        machine: &Axis,
+        [fit_logs, check_logs]: [&LogSet; 2],
+        nominal: Option<Columns>,
+    ) -> Result<Self, ReplayError> {
+        let fitter = Fitter {
+            machine,
+            set: fit_logs,
+        };
+        let start = fitter.at(State::initial(machine))?;
+        let nominal = nominal.unwrap_or_else(|| fitter.known_columns(&start));
+        let (fit, known) = calibrated(&fitter, start, nominal);
+        let mut begun = Self {
+            fit_logs: fit_logs.clone(),
+            check_logs: check_logs.clone(),
+            fit,
+            known,
+            hum: Hum::default(),
+        };
+        begun.settle(machine)?;
+        begun.take_out_hum(machine)?;
+        Ok(begun)
+    }
+
+    /// Defects and starts by the machine with its parameters as they were fitted, and these fitted again.
+    fn settle(&mut self, machine: &Axis) -> Result<(), ReplayError> {
+        for _ in 0..SETTLINGS {
+            let logs = [&self.fit_logs, &self.check_logs];
+            let mut begins_elsewhere = false;
+            if let Some(settled) = settled(machine, logs, &self.fit, &self.known) {
+                begins_elsewhere = settled.0.begins_elsewhere(&self.fit_logs, machine);
+                (self.fit_logs, self.check_logs) = settled;
+            }
+            let fitter = Fitter {
+                machine,
+                set: &self.fit_logs,
+            };
+            let there = fitter.at(self.fit.state.clone())?;
+            (self.fit, self.known) = fitter.calibrated(there, self.known.clone());
+            // What was fitted beside another start may have made up for it.
+            if !begins_elsewhere {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn take_out_hum(&mut self, machine: &Axis) -> Result<(), ReplayError> {
+        let checks = self.check_logs.simulate(machine, &self.fit.state)?;
+        self.hum = Hum::of(
+            (&self.fit_logs, &self.fit.traces),
+            (&self.check_logs, &checks),
+            &Hum::default(),
+        );
+        if self.hum.is_none() {
+            return Ok(());
+        }
+        self.fit_logs = self.hum.taken_out(&self.fit_logs, &self.fit.traces);
+        self.check_logs = self.hum.taken_out(&self.check_logs, &checks);
+        let fitter = Fitter {
+            machine,
+            set: &self.fit_logs,
+        };
+        let there = fitter.at(self.fit.state.clone())?;
+        (self.fit, self.known) = calibrated(&fitter, there, self.known.clone());
+        Ok(())
+    }
+
+    /// All effects, screened on these logs.
+    fn library(&self, machine: &Axis) -> Arc<Library> {
+        let fitter = Fitter {
+            machine,
+            set: &self.fit_logs,
+        };
+        Arc::new(Library::new(&fitter, &self.fit, self.known.clone()))
+    }
+
+    /// A search in which nothing is named yet.
+    fn search<'a>(
+        self,
+        machine: &'a Axis,
+        settings: &'a Settings,
+        library: Arc<Library>,
+    ) -> Result<Search<'a>, ReplayError> {
+        let set = &self.check_logs;
+        let check = Fitter { machine, set }.at(self.fit.state.clone())?;
+        let fitter = Fitter {
+            machine,
+            set: &self.fit_logs,
+        };
+        Ok(Search {
+            machine,
+            settings,
+            library,
+            gap_before: sizes(set, &set.rest(&check.traces)),
+            check,
+            steady: steady_noise_beside(&fitter, &self.fit),
+            fit: self.fit,
+            known: self.known,
+            named: Vec::new(),
+            replaced: Vec::new(),
+            leftover: Vec::new(),
+            refused: None,
+            unseen: Vec::new(),
+            hum: self.hum,
+            fit_logs: self.fit_logs,
+            check_logs: self.check_logs,
+        })
+    }
+}
+
+impl Search<'_> {
+    /// What remains of what was named once it is asked whether it is noise, imitates a law outside the library, or makes check
+    /// motion worse; with the intervals of that. `without` is the search in which nothing was named.
+    fn tested(self, without: &Self, as_filed: &LogSet) -> Result<(Self, Intervals), ReplayError> {
+        let mut search = self;
+        let mut intervals = search.intervals()?;
+        while search.drop_noise(&intervals) || search.drop_undetermined(&intervals) {
+            // What was named together with it may be nothing without it.
+            search.revise();
+            intervals = search.intervals()?;
+        }
+        if let Some(other) = search.without_imitations() {
+            search = match (other.named.is_empty(), &other.refused) {
+                (true, Some(refused)) => without.clone().with_refused(refused.clone()),
+                _ => other,
+            };
+            intervals = search.intervals()?;
+        }
+        // Only forms of friction beside a law that took the place of all effects: nothing is named that could be refused.
+        if search.effects_named() == 0 && search.refused.is_some() {
+            return Ok((search, intervals));
+        }
+        if let Some(refused) = search.refused(as_filed, without)? {
+            search = without.clone().with_refused(refused);
+            intervals = search.intervals()?;
+        } else if search.lacks_evidence(without)? {
+            search = without.clone().with_leftover(&search.named);
+            intervals = search.intervals()?;
+        }
+        Ok((search, intervals))
+    }
 }
 
 /// The known parameters fitted: from the file's values, and where these may be far off, from
@@ -236,8 +304,7 @@ const SETTLINGS: usize = 4;
 /// The logs with the defects and starts of a fitted machine, where it is one that runs.
 fn settled(
     machine: &Axis,
-    fit_logs: &LogSet,
-    check_logs: &LogSet,
+    [fit_logs, check_logs]: [&LogSet; 2],
     fit: &Fit,
     known: &Columns,
 ) -> Option<(LogSet, LogSet)> {

@@ -5,7 +5,6 @@ use rayon::prelude::*;
 
 use super::evidence::{LEAST_HELD_OUT, MATERIAL, WORSE, enough};
 use super::form::own_before_directions;
-use super::free_curve::FreeCurves;
 use super::promise::{PROMISING, Promises, WORTH};
 use super::refined::{
     Refined, Refinement, best_of_each, inside_before_bound, simplest_first, single_before_pair,
@@ -17,7 +16,7 @@ use crate::estimate::columns::{Columns, free_parameters};
 use crate::estimate::fit::Fit;
 use crate::name::gap::is_material;
 use crate::name::library::is_force_in_time;
-use crate::name::screen::Screened;
+use crate::name::screen::{Screened, Screening};
 
 /// Share of the promised fall of D that a simulation must keep, or other sizes are
 /// tried.
@@ -39,30 +38,9 @@ impl Search<'_> {
         let promises = Promises::new(self, &own);
         let screenings = promises.screenings(&own, |effect| self.wanted(effect, &awaited));
         let screened = promises.one_by_one(&screenings[0]);
-        let candidates = if awaited.is_empty() {
-            let mut worth = promises.worth_refining(&screened);
-            worth.extend(promises.of_most(&screenings));
-            let most = screened.first().map_or(0.0, |s| s.gain);
-            if self.effects_named() + 2 <= self.settings.most_effects {
-                worth.extend(promises.pairs(&screenings, most));
-                let with_memory = self.own_with_memory(&screened).into_iter();
-                worth.extend(with_memory.filter(|pair| promises.are_worth_it(pair, most)));
-            }
-            let resonances = self.resonances(&own, promises.of_noise());
-            let beside = [
-                self.forms(&own),
-                self.waves(&own),
-                self.turns(&own),
-                resonances,
-            ];
-            let beside = beside
-                .into_iter()
-                .flatten()
-                .filter(|s| s.gain >= WORTH * most);
-            worth.extend(beside.map(|one| vec![one]));
-            worth
-        } else {
-            screened.iter().map(|s| vec![s.clone()]).collect()
+        let candidates = match awaited.is_empty() {
+            true => self.worth_refining(&promises, &screenings, &screened, &own),
+            false => screened.iter().map(|s| vec![s.clone()]).collect(),
         };
         let mut of_all = self.refine(candidates, &own);
         let refined = &mut of_all.kept;
@@ -70,41 +48,7 @@ impl Search<'_> {
         single_before_pair(refined);
         inside_before_bound(refined);
         own_before_directions(refined);
-        let fitter = self.fitter();
-        let curves = FreeCurves::new(self, &fitter, &own);
-        // Of what is not material, by how much D falls on the fitted and on the check logs.
-        let mut immaterial: Vec<[f64; 2]> = Vec::new();
-        // Where the best does not hold on other motion, the next may.
-        let proven = refined.iter().enumerate().find_map(|(place, candidate)| {
-            let is_effect = awaited.is_empty() && !candidate.is_form();
-            if is_effect && self.cannot_be(candidate) {
-                return None;
-            }
-            let check = self.checker().at(candidate.fit.state.clone()).ok()?;
-            let held_out = self.check.deviance - check.deviance;
-            let is_other = || {
-                !curves.are_matched_by(candidate, held_out)
-                    || self.is_out_of_phase(candidate, &check, held_out)
-            };
-            if is_effect && is_other() {
-                return None;
-            }
-            if awaited.is_empty() {
-                if !self.holds(candidate, &check) {
-                    return None;
-                }
-                let falls = [candidate.gain, held_out];
-                if immaterial.iter().any(|little| is_no_more(falls, *little)) {
-                    return None;
-                }
-                if !self.is_material(candidate, &check) {
-                    immaterial.push(falls);
-                    return None;
-                }
-            }
-            Some((place, check))
-        });
-        let Some((place, check)) = proven else {
+        let Some((place, check)) = self.first_proven(refined) else {
             let alone = refined
                 .iter()
                 .filter(|r| r.parts.len() == 1 && !r.is_form());
@@ -129,6 +73,67 @@ impl Search<'_> {
         }
         self.unseen.clear();
         true
+    }
+
+    /// What is worth a simulation: single effects, pairs, forms of friction, loads that repeat and bodies that swing.
+    fn worth_refining(
+        &self,
+        promises: &Promises<'_>,
+        screenings: &[Screening],
+        screened: &[Screened],
+        own: &Columns,
+    ) -> Vec<Vec<Screened>> {
+        let mut worth = promises.worth_refining(screened);
+        worth.extend(promises.of_most(screenings));
+        let most = screened.first().map_or(0.0, |s| s.gain);
+        if self.effects_named() + 2 <= self.settings.most_effects {
+            worth.extend(promises.pairs(screenings, most));
+            let with_memory = self.own_with_memory(screened).into_iter();
+            worth.extend(with_memory.filter(|pair| promises.are_worth_it(pair, most)));
+        }
+        let beside = [
+            self.forms(own),
+            self.waves(own),
+            self.turns(own),
+            self.resonances(own, promises.of_noise()),
+        ];
+        let beside = beside.into_iter().flatten();
+        let beside = beside.filter(|s| s.gain >= WORTH * most);
+        worth.extend(beside.map(|one| vec![one]));
+        worth
+    }
+
+    /// The first candidate that proves itself, with its fit of the check logs: if the best does not hold on other motion, the
+    /// next may.
+    fn first_proven(&self, refined: &[Refined]) -> Option<(usize, Fit)> {
+        let is_open = self.awaited().is_empty();
+        // Of what is not material, by how much D falls on the fitted and on the check logs.
+        let mut immaterial: Vec<[f64; 2]> = Vec::new();
+        refined.iter().enumerate().find_map(|(place, candidate)| {
+            let is_effect = is_open && !candidate.is_form();
+            if is_effect && self.cannot_be(candidate) {
+                return None;
+            }
+            let check = self.checker().at(candidate.fit.state.clone()).ok()?;
+            let held_out = self.check.deviance - check.deviance;
+            if is_effect && self.is_out_of_phase(candidate, &check, held_out) {
+                return None;
+            }
+            if is_open {
+                if !self.holds(candidate, &check) {
+                    return None;
+                }
+                let falls = [candidate.gain, held_out];
+                if immaterial.iter().any(|little| is_no_more(falls, *little)) {
+                    return None;
+                }
+                if !self.is_material(candidate, &check) {
+                    immaterial.push(falls);
+                    return None;
+                }
+            }
+            Some((place, check))
+        })
     }
 
     fn add(&mut self, of_all: &Refinement, place: usize, check: Fit, screened: &[Screened]) {
@@ -167,95 +172,20 @@ impl Search<'_> {
 
     /// Candidates of one effect or two, by simulation; the simplest of the best first.
     pub(super) fn refine(&self, candidates: Vec<Vec<Screened>>, own: &Columns) -> Refinement {
-        let fitter = self.fitter();
         let promised = candidates.iter().map(|parts| parts[0].gain);
         let least = WORTH * promised.fold(0.0, f64::max);
         let asked = self.awaited();
-        let awaited = asked
+        let awaits_force = asked
             .iter()
             .any(|name| Effect::named(name).is_some_and(is_force_in_time));
-        let begin = |parts: Vec<Screened>| {
-            let as_screened = || {
-                let mut state = self.fit.state.clone();
-                state.effects.extend(parts.iter().map(|s| ActiveEffect {
-                    effect: s.effect,
-                    values: s.values.clone(),
-                }));
-                let fit = fitter.at(state).ok()?;
-                // Promised sizes are near enough where an answer grows with its
-                // size.
-                let kept = self.fit.deviance - fit.deviance >= KEPT * parts[0].gain;
-                Some(match kept {
-                    true => fit,
-                    false => fitter.best_size(fit, parts.len()),
-                })
-            };
-            let start = match parts.as_slice() {
-                [force] if is_force_in_time(force.effect) => {
-                    let found = self.force_in_time(own, least);
-                    found.or_else(|| as_screened().filter(|_| awaited))?
-                }
-                _ => as_screened()?,
-            };
-            Some(Refined {
-                parts,
-                fit: fitter.refine(start, own, 2),
-                gain: 0.0,
-            })
-        };
-        let mut refined: Vec<Refined> = candidates.into_par_iter().filter_map(begin).collect();
-        // Where known parameters may be far off, they have made up for what is not named yet,
-        // and D may be flat from there on.
-        if let Some(noise) = &self.steady {
-            let squares = fitter.squares(noise);
-            refined.sort_by(|a, b| a.fit.deviance.total_cmp(&b.fit.deviance));
-            let first = LED_FURTHER.min(refined.len());
-            let (led, others) = refined.split_at_mut(first);
-            let mut others: Vec<&mut Refined> = others.iter_mut().collect();
-            others.sort_by(|a, b| squares(&a.fit).total_cmp(&squares(&b.fit)));
-            let led = led.iter_mut().chain(others.into_iter().take(LED_FURTHER));
-            led.collect::<Vec<_>>().into_par_iter().for_each(|r| {
-                let near = fitter.by_least_squares(r.fit.clone(), self.known.clone(), noise, 0);
-                let near = fitter.refine(near, own, 2);
-                r.fit = r.fit.clone().better(near);
-            });
+        let mut refined: Vec<Refined> = (candidates.into_par_iter())
+            .filter_map(|parts| self.begun(parts, own, least, awaits_force))
+            .collect();
+        self.led_further(&mut refined, own);
+        if !awaits_force {
+            self.drop_loads_of_another_name(&mut refined);
         }
-        let stands = |r: &Refined| r.parts.len() == 1 && r.parts[0].effect.name == STANDING;
-        let has_standing = refined.iter().any(stands);
-        let in_motion = self.in_motion();
-        refined.retain(|r| match r.fit.state.effects.last() {
-            Some(last) if r.parts.len() == 1 && is_force_in_time(last.effect) => {
-                let times = [last.values[1], last.values[2]];
-                let is_standing = has_standing && self.acts_throughout(times);
-                awaited || in_motion.has(times) && !is_standing
-            }
-            _ => true,
-        });
-        let gain = |fit: &Fit| self.fit.deviance - fit.deviance;
-        // What is far behind after two rounds, or far from enough, is not carried further.
-        let best = refined.iter().map(|r| gain(&r.fit)).fold(0.0, f64::max);
-        let too_little = match asked.is_empty() {
-            true => PROMISING * self.needed(1, 1).max(self.material()),
-            false => 0.0,
-        };
-        refined.par_iter_mut().for_each(|r| {
-            let of_it = gain(&r.fit);
-            if of_it > 0.5 * best - 50.0 && of_it > too_little {
-                r.fit = fitter.refine(r.fit.clone(), own, 4);
-            }
-            r.gain = gain(&r.fit);
-        });
-        // Those that are near one another are compared where they end, with
-        // derivatives of all effects as they are there, or a simple one that is
-        // not there yet loses to one that contains it.
-        let best = refined.iter().map(|r| r.gain).fold(0.0, f64::max);
-        let near = |r: &Refined| r.gain > 0.8 * best && r.gain > too_little;
-        if refined.iter().filter(|r| near(r)).count() > 1 {
-            refined.par_iter_mut().filter(|r| near(r)).for_each(|r| {
-                r.fit = fitter.refine(r.fit.clone(), &self.known, 8);
-                r.gain = gain(&r.fit);
-            });
-        }
+        self.carried_on(&mut refined, own, asked.is_empty());
         let mut unseen = Vec::new();
         refined.retain(|r| {
             let drops = asked.is_empty() && r.added().iter().any(|a| self.is_unseen(a));
@@ -278,6 +208,111 @@ impl Search<'_> {
         }
         let kept = simplest_first(refined);
         Refinement { kept, unseen }
+    }
+
+    /// The first two rounds of a candidate; `None` if the machine does not run with it, or it is a force in time of which less
+    /// than `least` is to be had and none is awaited.
+    fn begun(
+        &self,
+        parts: Vec<Screened>,
+        own: &Columns,
+        least: f64,
+        awaits_force: bool,
+    ) -> Option<Refined> {
+        let fitter = self.fitter();
+        let as_screened = || {
+            let mut state = self.fit.state.clone();
+            state.effects.extend(parts.iter().map(|s| ActiveEffect {
+                effect: s.effect,
+                values: s.values.clone(),
+            }));
+            let fit = fitter.at(state).ok()?;
+            // Promised sizes are near enough where an answer grows with its
+            // size.
+            let kept = self.fit.deviance - fit.deviance >= KEPT * parts[0].gain;
+            Some(match kept {
+                true => fit,
+                false => fitter.best_size(fit, parts.len()),
+            })
+        };
+        let start = match parts.as_slice() {
+            [force] if is_force_in_time(force.effect) => {
+                let found = self.force_in_time(own, least);
+                found.or_else(|| as_screened().filter(|_| awaits_force))?
+            }
+            _ => as_screened()?,
+        };
+        Some(Refined {
+            parts,
+            fit: fitter.refine(start, own, 2),
+            gain: 0.0,
+        })
+    }
+
+    /// Leads the best candidates further by least squares: where known parameters may be far off, they have made up for what is
+    /// not named yet, and D may be flat from there on.
+    fn led_further(&self, refined: &mut [Refined], own: &Columns) {
+        let Some(noise) = &self.steady else {
+            return;
+        };
+        let fitter = self.fitter();
+        let squares = fitter.squares(noise);
+        refined.sort_by(|a, b| a.fit.deviance.total_cmp(&b.fit.deviance));
+        let first = LED_FURTHER.min(refined.len());
+        let (led, others) = refined.split_at_mut(first);
+        let mut others: Vec<&mut Refined> = others.iter_mut().collect();
+        others.sort_by(|a, b| squares(&a.fit).total_cmp(&squares(&b.fit)));
+        let led = led.iter_mut().chain(others.into_iter().take(LED_FURTHER));
+        led.collect::<Vec<_>>().into_par_iter().for_each(|r| {
+            let near = fitter.by_least_squares(r.fit.clone(), self.known.clone(), noise, 0);
+            let near = fitter.refine(near, own, 2);
+            r.fit = r.fit.clone().better(near);
+        });
+    }
+
+    /// Leaves out forces in time that are the constant load where that is a candidate, or act while no log moves.
+    fn drop_loads_of_another_name(&self, refined: &mut Vec<Refined>) {
+        let stands = |r: &Refined| r.parts.len() == 1 && r.parts[0].effect.name == STANDING;
+        let has_standing = refined.iter().any(stands);
+        let in_motion = self.in_motion();
+        refined.retain(|r| match r.fit.state.effects.last() {
+            Some(last) if r.parts.len() == 1 && is_force_in_time(last.effect) => {
+                let times = [last.values[1], last.values[2]];
+                let is_standing = has_standing && self.acts_throughout(times);
+                in_motion.has(times) && !is_standing
+            }
+            _ => true,
+        });
+    }
+
+    /// Further rounds of those that are near the best, and by how much D falls with each.
+    fn carried_on(&self, refined: &mut [Refined], own: &Columns, is_open: bool) {
+        let fitter = self.fitter();
+        let gain = |fit: &Fit| self.fit.deviance - fit.deviance;
+        // What is far behind after two rounds, or far from enough, is not carried further.
+        let best = refined.iter().map(|r| gain(&r.fit)).fold(0.0, f64::max);
+        let too_little = match is_open {
+            true => PROMISING * self.needed(1, 1).max(self.material()),
+            false => 0.0,
+        };
+        refined.par_iter_mut().for_each(|r| {
+            let of_it = gain(&r.fit);
+            if of_it > 0.5 * best - 50.0 && of_it > too_little {
+                r.fit = fitter.refine(r.fit.clone(), own, 4);
+            }
+            r.gain = gain(&r.fit);
+        });
+        // Those that are near one another are compared where they end, with
+        // derivatives of all effects as they are there, or a simple one that is
+        // not there yet loses to one that contains it.
+        let best = refined.iter().map(|r| r.gain).fold(0.0, f64::max);
+        let near = |r: &Refined| r.gain > 0.8 * best && r.gain > too_little;
+        if refined.iter().filter(|r| near(r)).count() > 1 {
+            refined.par_iter_mut().filter(|r| near(r)).for_each(|r| {
+                r.fit = fitter.refine(r.fit.clone(), &self.known, 8);
+                r.gain = gain(&r.fit);
+            });
+        }
     }
 
     /// Whether a candidate is no effect of this machine: with its sizes there would be less than none of

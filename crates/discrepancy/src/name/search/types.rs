@@ -215,11 +215,29 @@ pub enum RefusalReason {
     Worse(Vec<&'static str>),
     /// They take away this share of the gap on check motion, too little to explain it.
     Little(f64),
-    /// A law of one number that is not in the library, this one, explains as much as all of them
-    /// (more than one of them alone), and more of the check logs.
-    OneLaw(&'static str),
-    /// A law over this, in any form, is more probable than all of them together.
-    OneCurve(String),
+    /// A law outside the library is more probable than all of them together.
+    Law {
+        /// On what it depends.
+        over: String,
+        /// The law.
+        law: LawInPlace,
+        /// Fall of D that it brings on the fitted logs, beyond chance, and on the check logs.
+        evidence: [f64; 2],
+    },
+}
+
+/// A law outside the library that took the place of effects.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LawInPlace {
+    /// A curve.
+    Curve {
+        /// Its place among the library's.
+        index: usize,
+        /// Its values at the knots.
+        values: Vec<f64>,
+    },
+    /// A short term, in words.
+    Term(&'static str),
 }
 
 /// What a search found.
@@ -274,10 +292,10 @@ pub struct Test {
 pub(super) const SIMULATED: f64 = 2e-4;
 
 impl Found {
-    /// The law that was found in the place of effects, in words.
-    pub(crate) fn law_in_place(&self) -> Option<&'static str> {
-        match self.refused.as_ref()?.reason {
-            RefusalReason::OneLaw(words) => Some(words),
+    /// The law outside the library that took the place of effects, and the fall of D of the fitted and the check logs with it.
+    pub(crate) fn law_in_place(&self) -> Option<(&LawInPlace, [f64; 2])> {
+        match &self.refused.as_ref()?.reason {
+            RefusalReason::Law { law, evidence, .. } => Some((law, *evidence)),
             _ => None,
         }
     }

@@ -8,6 +8,7 @@ use axis_sim::effects::{ActiveEffect, Effect, EffectParameter, Nature, Scales};
 use super::form::WITH_MEMORY;
 use super::state::Search;
 use super::swing::is_frequency;
+use crate::answers::Prepared;
 
 /// Share of the way on which the axis' own friction comes on that slip with a memory must take.
 const OF_OWN_WAY: f64 = 0.1;
@@ -16,13 +17,13 @@ impl Search<'_> {
     /// Whether an effect is no other than a simpler one, with the values that it has.
     pub(super) fn is_unseen(&self, active: &ActiveEffect) -> bool {
         let scales = Scales::of(self.machine);
-        let rates = self.fit_logs.logs.iter().map(|log| 0.5 / log.period);
+        let highest = (self.fit_logs.logs.iter()).map(Prepared::highest_shown);
         let friction = &self.machine.friction;
         let lever = friction.lever(self.machine.travel_per_radian());
         let own_way = lever / friction.unit.parameters().stiffness;
         hardly_falls(active, &scales)
             || hardly_remembers(active, own_way)
-            || swings_as_fast(active, &scales, rates.fold(0.0, f64::max))
+            || swings_as_fast(active, &scales, highest.fold(0.0, f64::max))
     }
 }
 
