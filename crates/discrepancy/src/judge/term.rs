@@ -116,6 +116,12 @@ impl Short {
         self.gain
     }
 
+    /// Whether the 95 % interval of its number leaves out zero.
+    pub(super) fn is_determined(&self) -> bool {
+        let [number, deviation] = self.number;
+        number.abs() > 1.96 * deviation
+    }
+
     /// The residual with it on the check logs.
     pub(super) fn left(&self) -> &answers::Rest {
         &self.left

@@ -133,7 +133,8 @@ fn in_place(
             let solved = rest.solve(columns);
             let sought = Sought::AsGoodAs(solved.gain);
             let short = Short::of(logs, found, check, rest, shape.place, sought);
-            let short = short.filter(|short| short.over() == (shape.variable, shape.factor));
+            let is_its = |short: &Short| short.over() == (shape.variable, shape.factor);
+            let short = short.filter(|short| is_its(short) && short.is_determined());
             let formula = short.map(|short| short.formula(freedom));
             let curve = (values.clone(), solved.deviations);
             Some(unknown(shape, freedom, curve, evidence, formula))
