@@ -4,7 +4,7 @@
 use axis_log::{Channel, Log};
 use axis_sim::effects::{ActiveEffect, Effect};
 use axis_sim::{
-    Axis, Balance, BalanceError, ClosedLoop, LoadSensor, Recorder, ReplayError, Sensors, Tolerances,
+    Axis, Balance, BalanceError, ClosedLoop, Recorder, ReplayError, Sensors, Tolerances,
 };
 use compensator::NoCompensation;
 use rand::SeedableRng;
@@ -20,7 +20,7 @@ fn simulated(axis: &Axis) -> Log {
 }
 
 /// Any motion, likewise.
-fn simulated_on(axis: &Axis, motion: &impl Motion) -> Log {
+pub fn simulated_on(axis: &Axis, motion: &impl Motion) -> Log {
     let mut recorder = Recorder::new(axis);
     ClosedLoop::new(axis)
         .unwrap()
@@ -31,7 +31,7 @@ fn simulated_on(axis: &Axis, motion: &impl Motion) -> Log {
     recorder.log().unwrap()
 }
 
-fn without(log: &Log, names: &[&str]) -> Log {
+pub fn without(log: &Log, names: &[&str]) -> Log {
     let kept = log
         .channels()
         .iter()
@@ -57,7 +57,7 @@ fn needed(balance: &Balance, axis: &Axis, effects: &[ActiveEffect]) -> Vec<f64> 
 }
 
 /// RMS of log minus model as a share of the log's, of the model that made the log.
-fn unbalanced(axis: &Axis, log: &Log) -> f64 {
+pub fn unbalanced(axis: &Axis, log: &Log) -> f64 {
     let balance = Balance::new(log, axis.period, axis).unwrap();
     let measured = balance.compared().channel(balance.channel()).unwrap();
     let model = needed(&balance, axis, &[]);
@@ -190,65 +190,6 @@ fn a_screws_damping_is_in_a_balance() {
     println!("{found:.3} of the damping");
     // Measured 1.24: two inertias on one spring stand for the chain.
     assert!((found - 1.0).abs() < 0.35, "{found}");
-}
-
-/// Without a sensor at the load, a log's position is the motor's times the travel per radian, and the
-/// load swings behind it.
-#[test]
-fn a_position_without_a_sensor_at_the_load_is_the_motors() {
-    for (name, most) in [("joint.toml", 4e-4), ("belt.toml", 4e-4)] {
-        let mut axis = axis(name);
-        axis.sensors = Sensors {
-            load: LoadSensor::Missing,
-            motor: None,
-        };
-        let log = simulated_on(&axis, &back_and_forth(&axis));
-        let log = without(&log, &["motor_angle_rad"]);
-        let right = unbalanced(&axis, &log);
-        // Taken for the load's:
-        axis.sensors.load = LoadSensor::Perfect;
-        let wrong = unbalanced(&axis, &log);
-        println!("{name}: {right:.2e}, {wrong:.2e} if it were the load's");
-        assert!(right < most && right < 0.5 * wrong);
-    }
-}
-
-/// A motor's angle that was homed on the load where the log begins lacks the wind-up there, 2 mrad at the
-/// load under gravity: 0.2 rad of the motor, and twice that of an error that repeats twice a turn.
-#[test]
-fn the_wind_up_at_the_start_is_in_an_angle_that_was_homed() {
-    let text = crate::text("joint.toml");
-    let large = text.replace("kinematic_error_arcmin = 0.5", "kinematic_error_arcmin = 5");
-    assert_ne!(large, text);
-    let mut axis = Axis::parse("joint.toml", &large).unwrap();
-    axis.sensors = Sensors {
-        load: LoadSensor::Missing,
-        motor: None,
-    };
-    let log = simulated_on(&axis, &back_and_forth(&axis));
-    let share = unbalanced(&axis, &without(&log, &["motor_angle_rad"]));
-    println!("{share:.2e}");
-    // Measured 7.7e-4, and 1.06e-3 without.
-    assert!(share < 9e-4, "{share}");
-}
-
-/// The motor's own angle holds that wind-up, so the phase of what repeats with its turn is the one of the angle: cogging of
-/// order 6 would otherwise be shifted by a radian.
-#[test]
-fn the_motors_own_angle_has_no_further_wind_up() {
-    let cogging =
-        "\n[[effects]]\nname = \"cogging-torque\"\namplitude = 0.02\norder = 6\nphase = 0.3\n";
-    let mut axis = Axis::parse("joint.toml", &(crate::text("joint.toml") + cogging)).unwrap();
-    axis.sensors = Sensors {
-        load: LoadSensor::Missing,
-        motor: None,
-    };
-    let log = simulated_on(&axis, &back_and_forth(&axis));
-    for other in ["position_rad", "motor_angle_rad"] {
-        let share = unbalanced(&axis, &without(&log, &[other]));
-        println!("without {other}: {share:.2e}");
-        assert!(share < 1e-3, "without {other}: {share}");
-    }
 }
 
 /// The joint's position controller runs at 1 kHz and its speed controller at 4 kHz. A log in

@@ -9,6 +9,7 @@ mod bad_files;
 mod balance;
 mod balance_noise;
 mod balance_transmission;
+mod balance_wind_up;
 mod belt;
 mod closed_loop;
 mod controls;

@@ -62,10 +62,10 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
     let [fitter, checker] = [&found.fit_logs, &found.check_logs].map(|set| Fitter { machine, set });
     let rest = Rest::new(&fitter, &found.fit, &found.columns, &found.noise);
     let check = checker.at(found.fit.state.clone())?;
-    let curves = significant(found, &rest, material);
     if let Some(said) = in_place([&fitter, &checker], found, &check, &rest) {
         return Ok(Some(said));
     }
+    let curves = significant(found, &rest, material);
     let above_noise = curves.iter().filter(|curve| curve.is_above_noise);
     let tried = above_noise
         .take(TOLD)

@@ -2,9 +2,9 @@
 //!
 //! Effects imitate a law that is none of them: a load with a spring stands for a force that grows
 //! along the stroke in another way. So what is named, all together and each effect by itself beside the
-//! others, competes with every law over one variable, whatever its form, by what each explains of the
+//! others, competes with every curve over one variable and every short term, by what each explains of the
 //! fitted logs and predicts of the check logs, and by the latter alone. Numbers count by what each brings by
-//! chance, and so does the choice: k of E effects against one of V variables.
+//! chance, and so does the choice: k of E effects against one of V laws.
 
 use super::evidence::{DECIDES, MATERIAL};
 use super::is_form::is_form;
@@ -29,28 +29,26 @@ impl Search<'_> {
         let effects = self.fit.state.effects.iter().enumerate();
         let effects = effects.filter(|(_, a)| !is_form(a) && !self.is_accepted(a.effect.name));
         let in_question: Vec<usize> = effects.map(|(index, _)| index).collect();
-        let bare = self.without_all(&in_question)?;
-        let each = in_question.iter().map(|index| vec![*index]);
-        let each = each.filter(|one| one.len() < in_question.len());
-        let mut tried = std::iter::once(in_question.clone()).chain(each);
-        tried.find_map(|effects| self.without_imitation(&effects, &bare))
-    }
-
-    /// Without these effects; `None` if there are none.
-    fn without_all(&self, effects: &[usize]) -> Option<Self> {
-        let mut without = self.clone();
-        for index in effects.iter().rev() {
-            without = without.without(*index)?;
+        if in_question.is_empty() {
+            return None;
         }
-        (!effects.is_empty()).then_some(without)
+        let mut bare = self.clone();
+        for index in in_question.iter().rev() {
+            bare = bare.without(*index)?;
+        }
+        let of_all = self.without_imitation(&in_question, &bare, &bare);
+        if of_all.is_some() || in_question.len() == 1 {
+            return of_all;
+        }
+        let mut each = in_question.into_iter();
+        each.find_map(|one| self.without_imitation(&[one], &self.without(one)?, &bare))
     }
 
-    /// Without these effects, if a law outside the library is more probable in their place. `bare` is without all that are in
+    /// `without` these effects, if a law outside the library is more probable in their place. `bare` is without all that are in
     /// question.
-    fn without_imitation(&self, effects: &[usize], bare: &Self) -> Option<Self> {
-        let without = self.without_all(effects)?;
+    fn without_imitation(&self, effects: &[usize], without: &Self, bare: &Self) -> Option<Self> {
         let taken: Vec<_> = effects.iter().map(|i| self.named[*i].clone()).collect();
-        let contest = Contest::of(&without, self);
+        let contest = Contest::of(without, self);
         let rival = contest.most_probable()?;
         let numbers =
             free_parameters(&self.fit.state).len() - free_parameters(&without.fit.state).len();
@@ -81,14 +79,14 @@ impl Search<'_> {
         // Slow noise is a law over time, but one that predicts no other log.
         let is_law = of_law - (of_effects - choice) > least
             && rival.effects_check < rival.check
-            && rival.effects_beside < APART;
+            && contest.effects_beside(&rival.law) < APART;
         is_law.then(|| {
             let reason = RefusalReason::Law {
                 over: rival.over,
                 law: rival.law,
                 evidence: [rival.fit, rival.check],
             };
-            without.with_refused(Refused {
+            without.clone().with_refused(Refused {
                 effects: taken,
                 reason,
             })

@@ -1,10 +1,11 @@
 //! Laws outside the library in the place of effects: every curve over one variable, and every short term, fitted with
 //! simulations.
 
-use nalgebra::DVector;
-use rayon::prelude::*;
+use std::borrow::Cow;
 
 use axis_sim::effects::ActiveEffect;
+use nalgebra::DVector;
+use rayon::prelude::*;
 
 use super::revise::RIVAL;
 use super::state::Search;
@@ -50,14 +51,12 @@ pub(super) struct Rival {
     pub(super) effects_fit: f64,
     /// And on the check logs, on the same samples as the law.
     pub(super) effects_check: f64,
-    /// Share of what they bring on the fitted logs that they still bring beside the law.
-    pub(super) effects_beside: f64,
 }
 
 /// A law, and what its numbers do to the fitted logs.
 struct Law<'a> {
     form: Form<'a>,
-    columns: Columns,
+    columns: Cow<'a, Columns>,
 }
 
 enum Form<'a> {
@@ -97,14 +96,15 @@ impl<'a> Contest<'a> {
         let curves = without.library.curves.shapes.iter().enumerate();
         let curves = curves.map(|(index, (shape, columns))| Law {
             form: Form::Curve(index, shape),
-            columns: columns.clone(),
+            columns: Cow::Borrowed(columns),
         });
         let motions = courses(without.machine, fitter.set, &without.fit.traces);
         let terms = terms(Place::Force).iter().filter_map(|term| {
             let active = term.as_effect(&motions)?;
+            let columns = responses(&fitter, &without.fit, active.effect, &active.values);
             Some(Law {
-                columns: responses(&fitter, &without.fit, active.effect, &active.values),
                 form: Form::Term(term, active),
+                columns: Cow::Owned(columns),
             })
         });
         let fit_begins = Beginnings::of(&fitter, &without.fit);
@@ -161,7 +161,7 @@ impl<'a> Contest<'a> {
     /// What all parameters, a law's numbers and the beginnings do to the fitted logs, without the effects.
     fn columns(&self, law: &Law<'_>) -> Columns {
         let begins = self.fit_begins.columns();
-        let columns = self.own.iter().chain(&law.columns).chain(begins);
+        let columns = self.own.iter().chain(law.columns.iter()).chain(begins);
         columns.cloned().collect()
     }
 
@@ -198,7 +198,15 @@ impl<'a> Contest<'a> {
 
     /// Share of what the effects bring on the fitted logs that they still bring beside a law, as the linearised model has
     /// it: little where the law does what they do.
-    fn beside_law(&self, law: &Law<'_>) -> f64 {
+    pub(super) fn effects_beside(&self, law: &LawInPlace) -> f64 {
+        let is_it = |form: &Form<'_>| match (form, law) {
+            (Form::Curve(own, _), LawInPlace::Curve { index, .. }) => own == index,
+            (Form::Term(own, _), LawInPlace::Term(words)) => own.words == *words,
+            _ => false,
+        };
+        let Some(law) = self.laws.iter().find(|law| is_it(&law.form)) else {
+            return 0.0;
+        };
         let [without, with] = self.deviances;
         let start = &self.without.fit;
         let pairs = start.rest.iter().zip(&self.effects.fit.rest);
@@ -228,9 +236,10 @@ impl<'a> Contest<'a> {
             }
             Form::Term(term, active) => {
                 let fitted = self.refitted_term(active, beside)?;
-                let left = self.fit_begins.taken_out(self.fit_layout(), fitted.rest);
-                let deviance = self.fit_layout().deviance(&left)
-                    + self.without.fitter().departure(&fitted.state);
+                let layout = &self.without.fit_logs.layout;
+                let left = self.fit_begins.taken_out(layout, fitted.rest);
+                let departure = self.without.fitter().departure(&fitted.state);
+                let deviance = layout.deviance(&left) + departure;
                 let with_term = self.without.checker().at(fitted.state).ok()?;
                 let falls = [&with_term, &self.effects.check].map(|with| self.fall(with));
                 (
@@ -242,7 +251,6 @@ impl<'a> Contest<'a> {
             }
         };
         Some(Rival {
-            effects_beside: self.beside_law(beside.law),
             over,
             law,
             numbers,
@@ -251,10 +259,6 @@ impl<'a> Contest<'a> {
             effects_fit: without - with,
             effects_check,
         })
-    }
-
-    fn fit_layout(&self) -> &crate::spectrum::Layout {
-        &self.without.fit_logs.layout
     }
 
     /// Fall of D of the check logs with something.

@@ -86,6 +86,29 @@ mod tests {
         assert!(as_fast(&fastest, 5000.0) && !as_fast(&body, 5000.0));
     }
 
+    /// What balances low-pass at 40 Hz shows no body that swings faster, though its samples would.
+    #[test]
+    fn a_balance_shows_no_body_that_swings_above_its_low_pass() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/rack.toml");
+        let text = std::fs::read_to_string(file).unwrap() + "\n[balance]\ncutoff_hz = 40\n";
+        let axis = axis_sim::Axis::parse("rack.toml", &text).unwrap();
+        let motion = axis.plan(&axis.trajectories[0]).unwrap();
+        let mut recorder = axis_sim::Recorder::new(&axis);
+        axis_sim::ClosedLoop::new(&axis)
+            .unwrap()
+            .run(&motion, &mut compensator::NoCompensation, |c| {
+                recorder.push(c)
+            })
+            .completed()
+            .unwrap();
+        let logs = vec![("log".to_owned(), recorder.log().unwrap(), axis.period)];
+        let machine = axis.without_control().unwrap();
+        let set = crate::answers::LogSet::new(logs, &machine).unwrap();
+        let log = &set.logs[0];
+        assert!(0.5 / log.period > 41.0, "{}", log.period);
+        assert!((log.highest_shown() - 40.0).abs() < 1e-9);
+    }
+
     #[test]
     fn a_fall_at_its_highest_speed_and_a_memory_of_no_way_are_dry_friction() {
         let fall =
