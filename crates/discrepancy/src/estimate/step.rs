@@ -76,6 +76,14 @@ impl Fitter<'_> {
         }
     }
 
+    /// The standard deviation of the first number of an effect that was added to those whose derivatives `own` are.
+    pub(crate) fn deviation_of_added(&self, fit: &Fit, own: &Columns) -> f64 {
+        let new = self.effect_columns(fit, own.len() - fit.state.shares.len());
+        let columns: Columns = own.iter().cloned().chain(new).collect();
+        let at = own.len();
+        self.solve(fit, &columns).covariance[(at, at)].sqrt()
+    }
+
     /// A state so far along a step of all its parameters, inside their bounds.
     pub(crate) fn moved(&self, state: &State, step: &DVector<f64>, length: f64) -> State {
         let scales = Scales::of(self.machine);

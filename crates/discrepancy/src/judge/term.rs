@@ -175,10 +175,7 @@ fn fitted(
     let mut state = found.fit.state.clone();
     state.effects.push(active);
     let fit = fitter.refine(fitter.at(state)?, &found.columns, ROUNDS);
-    let new = fitter.effect_columns(&fit, found.columns.len() - fit.state.shares.len());
-    let at = found.columns.len();
-    let columns: Columns = found.columns.iter().cloned().chain(new).collect();
-    let deviation = fitter.solve(&fit, &columns).covariance[(at, at)].sqrt();
+    let deviation = fitter.deviation_of_added(&fit, &found.columns);
     Ok((fit, deviation))
 }
 

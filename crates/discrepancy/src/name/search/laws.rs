@@ -289,7 +289,8 @@ impl<'a> Contest<'a> {
         Some([with_law.min(by_itself), with_effects])
     }
 
-    /// A short term fitted together with all that is there, from where the linearised model leads.
+    /// A short term fitted together with all that is there, from where the linearised model leads; `None` also if the 95 %
+    /// interval of its own number holds zero: then it is what it is taken with, and another law.
     fn refitted_term(&self, active: &ActiveEffect, beside: &Beside<'_>) -> Option<Fit> {
         let fitter = self.without.fitter();
         let at = |length: f64| {
@@ -305,7 +306,12 @@ impl<'a> Contest<'a> {
             fitter.at(state).ok()
         };
         let start = SHORTER.iter().find_map(|length| at(*length))?;
-        Some(fitter.refine(start, &self.own, ROUNDS))
+        let fit = fitter.refine(start, &self.own, ROUNDS);
+        let added = fit.state.effects.last()?;
+        let mut numbers = added.values.iter().zip(added.effect.parameters);
+        let (number, _) = numbers.find(|(_, parameter)| parameter.is_size())?;
+        let deviation = fitter.deviation_of_added(&fit, &self.own);
+        (number.abs() > 1.96 * deviation).then_some(fit)
     }
 
     /// A curve fitted together with all that is there, from where the linearised model leads on with simulations: known
