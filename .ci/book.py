@@ -15,6 +15,7 @@ Blocks of a page:
                 lines that a reader changes in a file: each stands for the one of its key, or of the key in its
                 comment, `# in place of KEY`.
   ```sh,ignore  does not run; a comment before it says why: <!-- not run: ... -->
+A line of commands must mean the same in bash, PowerShell and cmd: no comment, no wildcard, no variable, no backslash, no single quote.
 A line with a command that a page names as <!-- not run: `COMMAND`: why --> is left out of its blocks.
 A page with <!-- goes on from PAGE.md --> finds the files that the blocks of that page have made.
 """
@@ -34,6 +35,9 @@ BOOK = ROOT / "target/book"
 # What a page's commands find beside them.
 FOLDERS = ["crates", "data", "docs", "tests"]
 LONGEST_S = 600
+# What PowerShell or cmd read otherwise than bash: comments, continued lines, wildcards and `~` that the shell replaces,
+# variables, single quotes, `&&`, and a program named by `./`.
+BASH_ONLY = re.compile(r"(?:^|\s)#|\\|[*?']|(?:^|\s)~/|\$|&&|^\./")
 
 
 def pages():
@@ -129,6 +133,8 @@ def run_page(page, text, work, scratch, wrong):
     env = dict(os.environ, PATH=f"{scratch / 'bin'}:{os.environ['PATH']}", HOME=str(scratch), NO_COLOR="1")
     for line, language, block, before, follows in blocks(text):
         where = f"{name}:{line}"
+        if language.split(",")[0] == "sh" and (one := next(filter(BASH_ONLY.search, block.splitlines()), None)):
+            sys.exit(f"{where}: PowerShell or cmd read this otherwise than bash; name each file, comment in the text:\n{one}")
         if language in ("sh", "sh,fails"):
             lines = [line for line in block.splitlines() if not any(command in line for command in left_out)]
             output, ran = run_block(where, "\n".join(lines), work, env, language == "sh,fails"), ran + 1
