@@ -190,8 +190,8 @@ pub fn read_axis(file: &Path) -> Result<Axis> {
     if file == Path::new(DEFAULT_AXIS) && !file.exists() {
         let program = program::name();
         return Err(wrong_use(format!(
-            "no axis file is given, and {DEFAULT_AXIS}, which is taken then, is not in this folder; \
-             give one with --axis FILE, or write one to begin with: `{program} new NAME --kind KIND`"
+            "--axis is missing, and its default, {DEFAULT_AXIS}, is not in this folder; \
+             name a file with --axis FILE, or write one to begin with: `{program} new NAME --kind KIND`"
         )));
     }
     Axis::read(file).map_err(|error| match &error {

@@ -20,12 +20,12 @@ const RATES: [RateRow; 18] = [
         "",
     ),
     (
-        "of these, that can be told from all others",
+        "of these, distinguishable from all others",
         |score| &score.separable,
         "",
     ),
     (
-        "seen and told apart: named first",
+        "seen and distinguishable: named first",
         |score| &score.right_first,
         "≥ 95 %",
     ),
@@ -55,7 +55,7 @@ const RATES: [RateRow; 18] = [
         "",
     ),
     (
-        "both of a pair named, where both are seen and told apart",
+        "both of a pair named, if both are seen and distinguishable",
         |score| &score.both_of_pair,
         "≥ 95 %",
     ),

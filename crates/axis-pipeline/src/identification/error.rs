@@ -10,7 +10,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum IdentifyLogsError {
     /// No logs.
-    #[error("no logs were given; at least one is needed, of constant-speed runs")]
+    #[error("there are no logs; at least one of constant-speed runs is needed")]
     NoLogs,
     /// A log is not sampled evenly, or too slowly.
     #[error("{log}: {reason}")]

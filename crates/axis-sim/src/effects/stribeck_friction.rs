@@ -11,7 +11,7 @@ const FASTEST: f64 = 0.1;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "stribeck-friction",
-    summary: "dry friction that falls with speed (rises, where the force is negative)",
+    summary: "dry friction that falls with speed (rises if the force is negative)",
     channel: EffectChannel::Torque,
     depends_on: "low speed",
     shown_over: EffectVariable::Speed,

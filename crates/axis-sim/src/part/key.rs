@@ -234,7 +234,7 @@ impl Key {
     /// `factor` is that of its unit to SI.
     pub fn left_out(&self, factor: f64) -> String {
         match (self.optional, self.default) {
-            (true, Some(default)) => format!("; {} where left out", SixDigits(default / factor)),
+            (true, Some(default)) => format!("; {} if left out", SixDigits(default / factor)),
             (true, None) => "; may be left out".to_owned(),
             (false, _) => String::new(),
         }

@@ -93,7 +93,7 @@ impl CaseOutcome {
             ),
             (
                 kind == CaseKind::Single && seen && told && !self.first_is_right(),
-                "told from all others, and not first",
+                "distinguishable from all others, and not first",
             ),
             (
                 several && seen && told && !self.all_are_named(),

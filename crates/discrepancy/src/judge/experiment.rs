@@ -43,7 +43,7 @@ pub struct Proposal {
 pub fn propose(machine: &Axis, found: &Found, noise: &LogNoise) -> Option<Proposal> {
     let index = found.named.iter().position(|n| !n.alike.is_empty())?;
     let question = Question::new(machine, found, index).ok()?;
-    tracing::debug!(pair = ?question.pair.each_ref().map(|e| (e.effect.name, &e.values)), "to be told apart");
+    tracing::debug!(pair = ?question.pair.each_ref().map(|e| (e.effect.name, &e.values)), "to be distinguished");
     let motions = motions(machine).ok()?;
     let answers: Vec<Proposal> = motions
         .into_par_iter()

@@ -286,7 +286,7 @@ class Axis:
         """What a duty asks of the axis' parts, beside what the `[rating]` of its file allows: an item a dict.
 
         - `motion`: the duty, as of `simulate`, simulated once and taken as repeated without a pause; all trajectories of the file there and
-          back, if neither this nor `logs` is given.
+          back, if neither this nor `logs` is set.
         - `logs`: the duty from a log or a list of logs: the load's position or the motor's angle, and a torque, force, current or the command of one.
 
         Keys of an item: `name`, `title`, `value`, `limit`, `unit`, `bound` ("at most" or "at least"), `margin` (1 is just kept, below 1 over),
@@ -789,7 +789,7 @@ class Machine:
         `acceleration_step` (m/s²) is allowed where the curvature jumps, with 0 the feed stops there; `rapid` is the feed of G0, m/s.
         `compensation` is the name of a strategy that needs nothing else (`STRATEGIES`), or a Compensator for each of `drives`. One that learns
         goes on from lap to lap. `correct=True` takes squareness, straightness and cross-talk of the machine file off the references; what
-        `identify` found may be given instead. `feeds` (m/s) makes a table of feed against error. `noise` is that of the sensors in multiples of
+        `identify` found may be passed instead. `feeds` (m/s) makes a table of feed against error. `noise` is that of the sensors in multiples of
         good ones. `progress("laps", done, total)`.
 
         Raises MotionError for a path or limits, StrategyError for a compensation, MachineError if the path has more coordinates than
@@ -1055,7 +1055,7 @@ def discover(
     - `progress`: called with (what, stage, None).
 
     A log is a path (`a.csv+b.csv` is one log in two files), a pandas or polars frame, a Run, or a dict of arrays. A path is read as
-    the axis file's `[log]` maps its columns; the others have channels as names, `t_s` among them, and NaN, or a mask, where there is no value.
+    the axis file's `[log]` maps its columns; the others have channels as names, `t_s` among them, and NaN, or a mask, for missing values.
 
     Raises LogError for a log of which no conclusion would be worth anything, SearchError for an unknown effect, AxisError, FileNotFoundError. Ctrl-C raises at
     once; the search itself ends at its next stage.

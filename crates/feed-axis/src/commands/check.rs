@@ -134,7 +134,7 @@ impl Options {
         };
         if numbers.is_empty() {
             return Err(wrong_use(format!(
-                "no motion is given, and the axis file has {}; valid: --program FILE or --log LOG",
+                "the motion is missing: the axis file has {}; valid: --program FILE or --log LOG",
                 listed(axis)
             )));
         }

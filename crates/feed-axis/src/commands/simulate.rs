@@ -334,7 +334,7 @@ fn motion(options: &Options, context: &Context) -> Result<(SharedMotion, Option<
     match options.trajectory {
         Some(number) => Ok((trajectory("--trajectory", number, context)?, None)),
         None => Err(wrong_use(format!(
-            "no motion is given; valid: --program FILE, or --trajectory N; the axis file has {}",
+            "the motion is missing; valid: --program FILE, or --trajectory N; the axis file has {}",
             listed(&context.axis)
         ))),
     }

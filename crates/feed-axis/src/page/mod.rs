@@ -89,7 +89,7 @@ fn overview(context: &Context, results: &Results) -> Section {
             context.machine.name, context.machine.description
         )
     } else {
-        "No stand-in for a machine was given, so \u{201c}machine\u{201d} is the model itself. Nothing on this page was measured.".to_owned()
+        "No axis file stood for the machine, so \u{201c}machine\u{201d} is the model itself. Nothing on this page was measured.".to_owned()
     };
     let mut section = Section::new("Overview").notice(Notice::Info, machine);
     if context.quick {

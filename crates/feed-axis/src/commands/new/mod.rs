@@ -167,6 +167,6 @@ mod tests {
         let pulley = line("pulley_diameter_mm = ");
         assert!(pulley.contains("from 1 to 10000, in mm"), "{pulley}");
         let backlash = line("# backlash_mm = 0 ");
-        assert!(backlash.contains("0 where left out"), "{backlash}");
+        assert!(backlash.contains("0 if left out"), "{backlash}");
     }
 }
