@@ -44,7 +44,7 @@ impl Growth {
     serde(rename_all = "kebab-case", deny_unknown_fields)
 )]
 pub enum GrowthZero {
-    /// The begin of the log.
+    /// The beginning of the log.
     #[default]
     Begin,
     /// The first reading at each place: its value there is unknown, as the pitch errors of a screw are.

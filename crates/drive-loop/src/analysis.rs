@@ -193,7 +193,7 @@ fn notes(axis: &Axis, loops: &AxisLoops) -> Vec<String> {
     let passage = loops.model.passage();
     if passage.speed_every > 1 || passage.position_every > 1 {
         all.push(
-            "margins take a loop that is slower than the control by its mean delay; stability is checked at the loops' own rates"
+            "a loop that is slower than the control enters the margins with its mean delay; stability is checked at the loops' own rates"
                 .to_owned(),
         );
     }

@@ -112,10 +112,10 @@ fn jitter_notes(set: &LogSet) -> impl Iterator<Item = String> {
         let largest = jitter.max_by(|(_, a), (_, b)| a.rms.total_cmp(&b.rms));
         largest.map(|(channel, jitter)| {
             format!(
-                "{}: samples jitter by {:.1} % of a period ({:.3} ms) under even time stamps, as {channel} shows: that is noise in proportion to speed, and counted in the noise stated here; stamps taken where the samples are taken would show smaller effects",
+                "{}: the samples of {channel} jitter by {:.1} % of a period ({:.1} µs) although their time stamps are even. Their error grows with the speed and counts as noise, which hides small effects: log the true instants to see these",
                 log.name,
                 100.0 * jitter.share,
-                1e3 * jitter.rms
+                1e6 * jitter.rms
             )
         })
     };

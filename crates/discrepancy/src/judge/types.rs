@@ -225,7 +225,7 @@ impl NextExperiment {
     #[must_use]
     pub fn said(&self) -> String {
         let expected = format!(
-            "The evidence to expect of a log of it is {}, and {} decide",
+            "One log of it should bring an evidence of {}, and {} are needed",
             said_evidence(self.by),
             DECIDES
         );
@@ -233,8 +233,8 @@ impl NextExperiment {
         match needed {
             _ if self.by >= DECIDES => format!("{expected}: one log is enough"),
             // As many as nobody records.
-            _ if needed <= 100.0 => format!("{expected}: {needed} logs are needed"),
-            _ => format!("{expected}: logs of it hardly tell the two apart"),
+            _ if needed <= 100.0 => format!("{expected}: record {needed} logs"),
+            _ => format!("{expected}: logs of it hardly distinguish the two"),
         }
     }
 }
@@ -338,10 +338,13 @@ mod tests {
         let next: NextExperiment = serde_json::from_str(text).unwrap();
         let said = |by: f64| NextExperiment { by, ..next.clone() }.said();
         for (by, end) in [
-            (1_795_009.4, "is 1.80e6, and 25 decide: one log is enough"),
+            (
+                1_795_009.4,
+                "of 1.80e6, and 25 are needed: one log is enough",
+            ),
             (25.0, "one log is enough"),
-            (12.0, "is 12, and 25 decide: 3 logs are needed"),
-            (0.0, "hardly tell the two apart"),
+            (12.0, "of 12, and 25 are needed: record 3 logs"),
+            (0.0, "hardly distinguish the two"),
         ] {
             assert!(said(by).ends_with(end), "{}", said(by));
         }

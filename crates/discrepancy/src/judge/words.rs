@@ -215,7 +215,7 @@ fn sure(discovery: &Discovery) -> Vec<String> {
     let wide = confidence.wide.iter();
     lines.extend(wide.map(|[effect, p]| {
         format!(
-            "The {} of {effect} is poorly determined: its 95 % interval is wider than half its value.",
+            "{effect}: {} is poorly determined, as its 95 % interval is wider than half its value.",
             p.replace('_', " ")
         )
     }));

@@ -38,8 +38,8 @@ pub struct Options {
     /// Logs of other motion, to check on; never fitted to
     #[arg(long, value_name = "LOG", num_args = 1.., required_unless_present = "summary")]
     check: Vec<PathBuf>,
-    /// Logs for the reported figures, used for no choice. Without them the last check log is
-    /// taken, or the last part of a single one if it can be cut
+    /// Logs for the reported figures, used for no choice. Without them the figures come from the
+    /// last check log, or from the last part of a single one if it can be cut
     #[arg(long, value_name = "LOG", num_args = 1.., requires = "check")]
     test: Vec<PathBuf>,
     /// Instead of logs: CSV with the columns trajectory, experiment_max_um and

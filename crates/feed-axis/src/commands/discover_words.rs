@@ -104,7 +104,7 @@ impl Found<'_> {
                 .collect();
             writeln!(
                 f,
-                "{} ({}) was named at first; beside the other effects, {} explains as much in its place",
+                "{} ({}) was named at first, then replaced: beside the other effects, {} explains the logs as well",
                 effect.name,
                 values.join(", "),
                 effect.by
@@ -150,7 +150,7 @@ impl Found<'_> {
         ) {
             writeln!(
                 f,
-                "\n--reject NAME searches again without an effect, --accept NAME with another one from the start."
+                "\nSearch again: --reject NAME leaves an effect out, --accept NAME has one in the model from the start."
             )?;
         }
         Ok(())

@@ -73,7 +73,7 @@ enum ProbeAgainst {
 /// What readings of a probe count from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum ProbeZero {
-    /// The begin of the log
+    /// The beginning of the log
     Begin,
     /// The first reading at each position
     First,

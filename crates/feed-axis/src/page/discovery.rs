@@ -83,7 +83,7 @@ fn friction(law: &FrictionCurve) -> Section {
         true => vec![both, low],
         false => vec![both],
     };
-    let section = Section::new("Friction over speed").paragraph("Steady force on the load against its motion. Dots: friction as the check logs show it, the law with all named effects plus the mean residual over a range of speeds.");
+    let section = Section::new("Friction over speed").paragraph("Steady force on the load against its motion. Dots: friction as the check logs show it, which is the law with all named effects plus the mean residual in each range of speed.");
     match figures.len() {
         1 => figures.into_iter().fold(section, Section::figure),
         columns => section.figure_grid(figures, columns),
@@ -183,7 +183,7 @@ fn effects(discovery: &Discovery) -> Section {
         "Named at first, then replaced",
         ["Effect", "parameter", "value then", "replaced by"],
     )
-    .note("With the effects that were named later, the other one explains as much.");
+    .note("Beside the effects that were named later, the one in the last column explains the logs as well.");
     for effect in &discovery.replaced {
         for (name, value, unit) in &effect.when_named {
             replaced = replaced.row([
@@ -332,13 +332,12 @@ fn unknown(unknown: &Unknown) -> Section {
             "It acts in the {} and depends on {}. {}",
             unknown.channel,
             unknown.depends_on,
-            unknown
-                .formula
-                .clone()
-                .unwrap_or_else(|| { "No short formula does as much as the curve.".to_owned() })
+            unknown.formula.clone().unwrap_or_else(|| {
+                "No short formula describes it as well as the curve.".to_owned()
+            })
         ))
         .paragraph(format!(
-            "Evidence (fall of −2 log L; chance alone reaches some tens): {fall}."
+            "Evidence (fall of −2 log L): {fall}. Chance alone reaches some tens."
         ))
         .figure(figure)
 }

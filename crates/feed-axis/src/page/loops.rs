@@ -102,7 +102,7 @@ pub fn margins(found: &LoopAnalysis) -> Section {
     section = match found.worst.sensitivity {
         Some(most) => section.notice(
             if most <= 1.605 { Notice::Good } else { Notice::Warn },
-            format!("The maximum sensitivity over {} cases is {most:.2}; 1.6 leaves a drive room for what the model lacks, from 2 on it rings.", found.corners.len()),
+            format!("The maximum sensitivity over {} cases is {most:.2}; at 1.6 a drive tolerates what the model lacks, from 2 on it rings.", found.corners.len()),
         ),
         None => section.notice(
             Notice::Warn,

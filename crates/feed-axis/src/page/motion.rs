@@ -156,7 +156,7 @@ fn answers(ran: &Ran<'_>) -> Vec<(String, Vec<String>)> {
     let noise = match ran.noise {
         0.0 => "Simulated, not measured; sensors without noise.".to_owned(),
         factor => format!(
-            "Simulated, not measured; sensors with noise, {factor} times that of good ones (seed {}).",
+            "Simulated, not measured; noise of the sensors {factor} times that of good ones (seed {}).",
             ran.seed
         ),
     };
@@ -319,7 +319,10 @@ fn settings(ran: &Ran<'_>) -> Section {
         .entry("Axis", &ran.axis.name)
         .entry("Fingerprint of the axis", &ran.axis.fingerprint)
         .entry("Compensation", ran.compensation)
-        .entry("Noise of the sensors, times that of good ones", ran.noise)
+        .entry(
+            "Noise of the sensors, as a multiple of that of good ones",
+            ran.noise,
+        )
         .entry("Seed", ran.seed)
         .entry("Points of the figures", points)
         .entry("Version", env!("CARGO_PKG_VERSION"));

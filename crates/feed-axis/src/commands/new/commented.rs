@@ -38,7 +38,7 @@ pub fn file(example: &str, name: &str, made_by: &str) -> Result<String> {
 fn head(made_by: &str) -> String {
     format!(
         "# Made by `{made_by}`.\n\
-         # The last part of a key is its unit. Behind each key stands what is valid. The values are\n\
+         # The last part of a key is its unit; the comment behind it says what is valid. The values are\n\
          # those of an example: replace them by the machine's. What is commented out may be left out.\n"
     )
 }
