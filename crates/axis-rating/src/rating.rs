@@ -17,7 +17,7 @@ pub enum Bound {
 /// A value beside its limit, both in the same unit.
 ///
 /// The margin is by how much the limit is kept: limit/value of what may be at most the limit,
-/// value/limit of what must be at least that. 1 is just kept, below 1 is over.
+/// value/limit of what must be at least that. At 1 the limit is just reached, below 1 exceeded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rating {
     /// What the duty asks, or what the part gives under it ([`Bound::AtLeast`]).

@@ -289,7 +289,7 @@ class Axis:
           back, if neither this nor `logs` is set.
         - `logs`: the duty from a log or a list of logs: the load's position or the motor's angle, and a torque, force, current or the command of one.
 
-        Keys of an item: `name`, `title`, `value`, `limit`, `unit`, `bound` ("at most" or "at least"), `margin` (1 is just kept, below 1 over),
+        Keys of an item: `name`, `title`, `value`, `limit`, `unit`, `bound` ("at most" or "at least"), `margin` (at 1 the limit is just reached, below 1 exceeded),
         `verdict` ("ok", "over", "not known"), `give` (keys that would make it known). What is not known is None; what has no bound is `float("inf")`.
 
         Raises MotionError, SimulationError, LogError; AxisError if numbers of `[rating]` contradict each other.

@@ -48,7 +48,7 @@ pub struct CheckedRow {
     pub limit: Option<f64>,
     /// "at most" or "at least"; none without a limit.
     pub bound: Option<&'static str>,
-    /// limit/value, or value/limit of what must be at least the limit: 1 is just kept; infinite if nothing is asked. None without
+    /// limit/value, or value/limit of what must be at least the limit: 1 just reaches it; infinite if nothing is asked. None without
     /// a limit.
     pub margin: Option<f64>,
     /// "ok", "over" or "not known".

@@ -16,7 +16,7 @@ pub fn page(found: &Checked) -> Page {
         "Items",
         ["item", "what", "value", "limit", "margin", "verdict"],
     )
-    .note("Margin: limit over value, of lives and safeties value over limit; 1 is just kept. An item that the axis cannot have is left out.");
+    .note("Margin: limit divided by value; of lives and safeties, value divided by limit. At 1 the limit is just reached. An item that the axis cannot have is left out.");
     for item in &found.items {
         let mark = match item.verdict {
             "over" => Mark::Failing,
