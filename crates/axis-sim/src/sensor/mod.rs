@@ -28,6 +28,11 @@ pub trait Sensor: fmt::Debug + Send + Sync {
         0.0
     }
 
+    /// Whether it shows its quantity without noise and without steps, late or periodically wrong as it may be.
+    fn is_exact(&self) -> bool {
+        self.resolution() == 0.0
+    }
+
     /// The sensor at work, sampled every `period` seconds. `noise` is the seed of its noise;
     /// without one it has neither noise nor steps, but all that repeats and delays.
     fn start(&self, period: f64, noise: Option<u64>) -> Box<dyn Sensing>;

@@ -40,6 +40,10 @@ impl Sensor for Signal {
         self.delay
     }
 
+    fn is_exact(&self) -> bool {
+        self.resolution == 0.0 && self.noise == 0.0
+    }
+
     fn start(&self, period: f64, noise: Option<u64>) -> Box<dyn Sensing> {
         let exact = Self {
             resolution: 0.0,

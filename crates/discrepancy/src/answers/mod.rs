@@ -1,5 +1,6 @@
 //! How a model answers a log: by its closed loop, or by its torque balance.
 
+mod defect;
 pub mod effort;
 mod inexact;
 mod prepare;

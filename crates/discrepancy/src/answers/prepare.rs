@@ -5,7 +5,6 @@ use axis_sim::part::Role;
 use axis_sim::{
     Axis, Balance, ChannelPart, ClosedLoop, LogChannel, Replay, ReplayError, reference_in,
 };
-use rayon::prelude::*;
 
 use super::inexact::inexactness;
 use super::set::{LogSet, Prepared, relative};
@@ -159,44 +158,5 @@ impl LogSet {
             set.correct_defects(machine, &State::initial(machine))?;
         }
         Ok(set)
-    }
-
-    /// Simulates each log once in the mechanism's exact way, where that is another than
-    /// the fast one, and keeps the difference: a screw's fixed mesh is too stiff between
-    /// its nodes by nanometres, and these would be found as an effect.
-    ///
-    /// # Errors
-    /// [`ReplayError`] if the machine does not run at this state.
-    pub fn correct_defects(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
-        let known = machine.with_known(&state.shares);
-        let Some(step) = known.mechanism.exact_step().filter(|_| !self.is_balanced()) else {
-            return Ok(());
-        };
-        let mut slow = known.clone();
-        slow.effects.extend_from_slice(&state.effects);
-        let slow = ClosedLoop::exact(&slow, step)?.without_noise();
-        let defects: Vec<Vec<Vec<f64>>> = self
-            .logs
-            .par_iter()
-            .map(|log| {
-                let fast = log.answer.run(&known, &state.effects, None)?;
-                let exact = match log.answer.replay() {
-                    Some(replay) => replay.follow(&slow, |_| ())?,
-                    None => fast.clone(),
-                };
-                let channel = |c: usize| {
-                    let pairs = self
-                        .simulated(&exact, c)
-                        .into_iter()
-                        .zip(self.simulated(&fast, c));
-                    pairs.map(|(a, b)| a - b).collect()
-                };
-                Ok((0..self.channels.len()).map(channel).collect())
-            })
-            .collect::<Result<_, ReplayError>>()?;
-        for (log, defect) in self.logs.iter_mut().zip(defects) {
-            log.defect = defect;
-        }
-        Ok(())
     }
 }

@@ -8,13 +8,22 @@ use super::types::{AtScrew, EffectFound, ParameterFound, RefusedEffects, Replace
 use crate::answers::is_form_of;
 use crate::estimate::columns::free_parameters;
 use crate::name::search::{Found, LawInPlace, Named, RefusalReason, Refused, Replaced};
+use crate::name::transfer::Transfer;
+
+/// What an effect does on the logs that a discovery is judged by.
+pub(super) struct OnCheck {
+    /// Share of their gap that comes back without it.
+    pub share_of_gap: f64,
+    /// Its size there.
+    pub transfer: Transfer,
+}
 
 pub(super) fn effect_found(
     machine: &Axis,
     found: &Found,
     index: usize,
     named: &Named,
-    share_of_gap: f64,
+    on_check: &OnCheck,
 ) -> EffectFound {
     let active = &found.fit.state.effects[index];
     let free = free_parameters(&found.fit.state);
@@ -49,8 +58,9 @@ pub(super) fn effect_found(
             .collect(),
         channel: active.effect.channel.name().to_owned(),
         depends_on: active.effect.depends_on.to_owned(),
-        share_of_gap,
+        share_of_gap: on_check.share_of_gap,
         evidence: [named.evidence, named.held_out],
+        size_on_check: on_check.transfer.interval(),
         runners_up: named
             .runners_up
             .iter()
@@ -95,6 +105,10 @@ pub(super) fn refused_effects(refused: &Refused) -> RefusedEffects {
         },
         RefusalReason::Little(share) => RefusedEffects {
             takes_away: Some(*share),
+            ..told
+        },
+        RefusalReason::Size(ratio) => RefusedEffects {
+            size_on_check: Some(*ratio),
             ..told
         },
         RefusalReason::Law { over, law, .. } => RefusedEffects {

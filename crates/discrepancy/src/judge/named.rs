@@ -6,11 +6,12 @@ use super::against::{Against, against};
 use super::compared::Compared;
 use super::cost::{Cost, cost};
 use super::form::FormFound;
-use super::found::{effect_found, form_of_own};
+use super::found::{OnCheck, effect_found, form_of_own};
 use super::law::steady;
 use super::types::EffectFound;
 use crate::name::gap::gap;
 use crate::name::search::is_form;
+use crate::name::transfer::Transfer;
 
 /// What was named, in figures.
 #[derive(Default)]
@@ -61,7 +62,11 @@ impl NamedEffects {
                 named.pictured.extend(picture);
             }
             let share = (left.gap.reduction - lost.reduction).clamp(0.0, 1.0);
-            let effect = effect_found(machine, found, index, one, share);
+            let on_check = OnCheck {
+                share_of_gap: share,
+                transfer: Transfer::new(set, &without, after),
+            };
+            let effect = effect_found(machine, found, index, one, &on_check);
             named.effects.push(effect);
         }
         (named.effects).sort_by(|a, b| b.share_of_gap.total_cmp(&a.share_of_gap));

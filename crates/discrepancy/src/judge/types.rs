@@ -90,6 +90,10 @@ pub struct EffectFound {
     pub share_of_gap: f64,
     /// Fall of minus twice the log-likelihood: on the fit logs, on the check logs.
     pub evidence: [f64; 2],
+    /// Its size, fitted to the logs of which the figures are, over the size that it has: lower end of the 95 % interval, ratio,
+    /// upper end. `None` if it does nothing there.
+    #[serde(default)]
+    pub size_on_check: Option<[f64; 3]>,
     /// What else was tried in its place, with the fall that it reached.
     pub runners_up: Vec<(String, f64)>,
     /// In what its law differs from the library's; `None` if nothing shows that.
@@ -108,8 +112,8 @@ pub struct ReplacedEffect {
 }
 
 /// Effects that explain something of the fitted logs, and are not given: with them check
-/// motion is further off, or they take away too little of its gap, or one law outside the library
-/// explains as much as all of them.
+/// motion is further off, or they take away too little of its gap or have another size there, or one law outside the
+/// library explains as much as all of them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RefusedEffects {
     /// Names.
@@ -119,6 +123,9 @@ pub struct RefusedEffects {
     /// Share of the gap on check motion that they take away, where that is too little.
     #[serde(default)]
     pub takes_away: Option<f64>,
+    /// Size of the first of them on check motion over its size on the fitted motion, where that is another.
+    #[serde(default)]
+    pub size_on_check: Option<f64>,
     /// The law outside the library that is more probable than they are together, if it has a formula: a force in
     /// proportion to this, of time t, position x and speed v.
     #[serde(default)]
@@ -144,6 +151,11 @@ impl RefusedEffects {
             return format!(
                 " {names} would take away {:.0} % of the gap, too little for a name, so {they} {is} not named.",
                 100.0 * share.max(0.0)
+            );
+        }
+        if let (Some(ratio), Some(first)) = (self.size_on_check, self.effects.first()) {
+            return format!(
+                " {first} would have {ratio:.2} times its size on check motion, so it stands for something else and is not named."
             );
         }
         if let Some(law) = &self.law {

@@ -206,6 +206,7 @@ fn sure(discovery: &Discovery) -> Vec<String> {
     if !discovery.effects.is_empty() {
         lines.push(format!("{}.", discovery.gap.check.gone()));
     }
+    lines.extend(sizes_on_check(&discovery.effects));
     lines.extend(discovery.figures.sentence());
     lines.push(answer(&discovery.answer).to_owned());
     let edges = confidence.at_edge.iter().map(|k| {
@@ -220,6 +221,27 @@ fn sure(discovery: &Discovery) -> Vec<String> {
         )
     }));
     lines
+}
+
+/// The sizes that motion outside the fit asks for by itself, beside those that are given.
+fn sizes_on_check(effects: &[EffectFound]) -> Option<String> {
+    let one = |effect: &EffectFound| {
+        let [from, ratio, to] = effect.size_on_check?;
+        Some(match to - from < 1.0 {
+            true => format!(
+                "{} {ratio:.2} times (95 %: {from:.2} to {to:.2})",
+                effect.name
+            ),
+            false => format!("{} hardly shows there", effect.name),
+        })
+    };
+    let all: Vec<String> = effects.iter().filter_map(one).collect();
+    (!all.is_empty()).then(|| {
+        format!(
+            "Size on motion not used in the fit over the size above: {}.",
+            all.join("; ")
+        )
+    })
 }
 
 fn verdict(verdict: Verdict) -> &'static str {

@@ -6,3 +6,4 @@ pub mod library;
 pub mod screen;
 pub mod search;
 pub mod terms;
+pub(crate) mod transfer;

@@ -90,6 +90,7 @@ fn viscous() -> EffectFound {
         channel: "torque balance".to_owned(),
         depends_on: "speed".to_owned(),
         share_of_gap: 0.99,
+        size_on_check: None,
         evidence: [1e5, 1e5],
         runners_up: Vec::new(),
         form: None,

@@ -233,6 +233,7 @@ impl Begun {
             replaced: Vec::new(),
             leftover: Vec::new(),
             refused: None,
+            untransferred: Vec::new(),
             unseen: Vec::new(),
             hum: self.hum,
             fit_logs: self.fit_logs,
@@ -247,7 +248,10 @@ impl Search<'_> {
     fn tested(self, without: &Self, as_filed: &LogSet) -> Result<(Self, Intervals), ReplayError> {
         let mut search = self;
         let mut intervals = search.intervals()?;
-        while search.drop_noise(&intervals) || search.drop_undetermined(&intervals) {
+        while search.drop_noise(&intervals)
+            || search.drop_undetermined(&intervals)
+            || search.drop_untransferred()
+        {
             // What was named together with it may be nothing without it.
             search.revise();
             intervals = search.intervals()?;
@@ -263,7 +267,10 @@ impl Search<'_> {
         if search.effects_named() == 0 && search.refused.is_some() {
             return Ok((search, intervals));
         }
-        if let Some(refused) = search.refused(as_filed, without)? {
+        if let Some(refused) = search.refused_for_size() {
+            search = without.clone().with_refused(refused);
+            intervals = search.intervals()?;
+        } else if let Some(refused) = search.refused(as_filed, without)? {
             search = without.clone().with_refused(refused);
             intervals = search.intervals()?;
         } else if search.lacks_evidence(without)? {

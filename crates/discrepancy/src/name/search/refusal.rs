@@ -61,6 +61,16 @@ impl Search<'_> {
         Ok(refused.then(|| self.refusal(RefusalReason::Little(share))))
     }
 
+    /// What had another size on the check logs, if nothing else was named.
+    pub(super) fn refused_for_size(&self) -> Option<Refused> {
+        let (_, ratio) = self.untransferred.first()?;
+        let effects = self.untransferred.iter().map(|(named, _)| named.clone());
+        (self.effects_named() == 0).then(|| Refused {
+            effects: effects.collect(),
+            reason: RefusalReason::Size(*ratio),
+        })
+    }
+
     /// Whether the effects of a balance of which no channel stood out of its noise bring less than
     /// is asked then: as if nothing had been named.
     pub(super) fn lacks_evidence(&self, without: &Self) -> Result<bool, ReplayError> {

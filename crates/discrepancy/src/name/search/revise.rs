@@ -18,6 +18,7 @@ use crate::answers::is_form_of;
 use crate::estimate::columns::is_free;
 use crate::estimate::known::pinned;
 use crate::estimate::spread::over_noise;
+use crate::name::transfer::Transfer;
 
 /// Share of what an effect brings, or promises, that another must promise in its place before
 /// that is tried.
@@ -143,6 +144,45 @@ impl Search<'_> {
             }
         }
         false
+    }
+
+    /// Takes out the effect whose size on the check logs differs most from that on the fitted ones, if more than a law of the
+    /// library may ([`Transfer`]): what has another size on other motion stands for something else.
+    pub(super) fn drop_untransferred(&mut self) -> bool {
+        let Some((effect, transfer)) = self.least_transferred() else {
+            return false;
+        };
+        let Some(without) = self.without(effect) else {
+            return false;
+        };
+        let name = self.fit.state.effects[effect].effect.name;
+        tracing::debug!(
+            name,
+            transfer.ratio,
+            transfer.half_width,
+            "another size on the check logs"
+        );
+        let named = self.named[effect].clone();
+        *self = without;
+        self.untransferred.push((named, transfer.ratio));
+        true
+    }
+
+    /// The effect whose size on the check logs differs most, if it does so by too much.
+    fn least_transferred(&self) -> Option<(usize, Transfer)> {
+        let set = &self.check_logs;
+        let with = set.rest(&self.check.traces);
+        let of_effect = |index: usize| {
+            let mut state = self.check.state.clone();
+            state.remove(index);
+            let without = set.rest(&set.simulate(self.machine, &state).ok()?);
+            Some((index, Transfer::new(set, &without, &with)))
+        };
+        let effects = self.fit.state.effects.iter().enumerate();
+        let asked = effects.filter(|(_, e)| !is_form(e) && !self.is_accepted(e.effect.name));
+        let all = asked.filter_map(|(index, _)| of_effect(index));
+        let differing = all.filter(|(_, transfer)| transfer.excess() > 0.0);
+        differing.max_by(|a, b| a.1.excess().total_cmp(&b.1.excess()))
     }
 
     /// Whether the engineer takes an effect as there.

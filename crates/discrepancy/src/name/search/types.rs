@@ -215,6 +215,8 @@ pub enum RefusalReason {
     Worse(Vec<&'static str>),
     /// They take away this share of the gap on check motion, too little to explain it.
     Little(f64),
+    /// The size of the first of them, fitted to the check logs, is this times its size.
+    Size(f64),
     /// A law outside the library is more probable than all of them together.
     Law {
         /// On what it depends.
