@@ -223,25 +223,22 @@ fn sure(discovery: &Discovery) -> Vec<String> {
     lines
 }
 
-/// The sizes that motion outside the fit asks for by itself, beside those that are given.
+/// The sizes that motion outside the fit asks for by itself, relative to those that are given.
 fn sizes_on_check(effects: &[EffectFound]) -> Option<String> {
     let one = |effect: &EffectFound| {
-        let [from, ratio, to] = effect.size_on_check?;
-        Some(match to - from < 1.0 {
-            true => format!(
-                "{} {ratio:.2} times (95 %: {from:.2} to {to:.2})",
-                effect.name
-            ),
+        let ratios = effect.size_on_check?;
+        let [from, ratio, to] = ratios.map(|r| format!("{r:.2}"));
+        Some(match ratios[2] - ratios[0] < 1.0 {
             false => format!("{} hardly shows there", effect.name),
+            true if from == to => format!("{} {ratio}", effect.name),
+            true => format!("{} {ratio} (95 %: {from} to {to})", effect.name),
         })
     };
     let all: Vec<String> = effects.iter().filter_map(one).collect();
-    (!all.is_empty()).then(|| {
-        format!(
-            "Size on motion not used in the fit over the size above: {}.",
-            all.join("; ")
-        )
-    })
+    let all = (!all.is_empty()).then(|| all.join("; "))?;
+    Some(format!(
+        "Size on motion not used in the fit, relative to that above: {all}."
+    ))
 }
 
 fn verdict(verdict: Verdict) -> &'static str {

@@ -90,7 +90,7 @@ fn viscous() -> EffectFound {
         channel: "torque balance".to_owned(),
         depends_on: "speed".to_owned(),
         share_of_gap: 0.99,
-        size_on_check: None,
+        size_on_check: Some([0.998, 1.0, 1.002]),
         evidence: [1e5, 1e5],
         runners_up: Vec::new(),
         form: None,
@@ -132,6 +132,12 @@ fn an_effect_is_told_with_its_cost_confidence_and_remedy() {
     let sure = lines(&made, "How sure");
     assert_eq!(sure[0], "Confidence: high (the gap is explained).");
     assert!(sure[1].starts_with("99.7 % of the gap"));
+    let said = "Size on motion not used in the fit, relative to that above: viscous-friction 1.00.";
+    assert_eq!(sure[2], said);
+    let mut wide = made.clone();
+    wide.effects[0].size_on_check = Some([0.8, 0.9, 1.0]);
+    let of_wide = lines(&wide, "How sure");
+    assert!(of_wide[2].ends_with("viscous-friction 0.90 (95 %: 0.80 to 1.00)."));
     let mut small = made.clone();
     small.gap.check.channels[0].before = 1.1e-8;
     assert!(lines(&small, "How sure")[1].starts_with("No channel exceeded"));
