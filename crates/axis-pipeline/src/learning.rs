@@ -1,7 +1,7 @@
 //! What was learned of a move from its logs, as it is kept between repetitions.
 
 use axis_log::Log;
-use axis_sim::Axis;
+use axis_sim::{Axis, position_shown};
 use compensator::{CompensatorError, LearnedMove, LearningSettings, Round};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -74,7 +74,7 @@ struct Cycles {
 impl Cycles {
     fn of(axis: &Axis, log: &Log) -> Result<Self, LearningError> {
         let reference = log.channel(axis.reference_channel())?;
-        let position = log.channel(axis.position_channel())?;
+        let position = position_shown(log, axis)?;
         let (time, period) = (log.time(), axis.period);
         let begin = time.first().copied().unwrap_or(0.0);
         let index = |t: f64| ((t - begin) / period).round();
@@ -92,7 +92,7 @@ impl Cycles {
             reference: vec![f64::NAN; last as usize + 1],
             errors: vec![None; last as usize + 1],
         };
-        for ((t, r), p) in time.iter().zip(reference).zip(position) {
+        for ((t, r), p) in time.iter().zip(reference).zip(&*position) {
             let k = index(*t) as usize;
             cycles.reference[k] = *r;
             cycles.errors[k] = Some(r - p);

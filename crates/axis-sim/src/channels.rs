@@ -2,10 +2,12 @@
 
 use ChannelPart::{Commanded, Given, Made, Sensed, Shown};
 
+use std::borrow::Cow;
+
 use axis_log::{Log, LogError};
 
 use crate::actuator::Effort;
-use crate::axis::Axis;
+use crate::axis::{Axis, LoadSensor};
 use crate::cycle::Cycle;
 use crate::freedom::Freedom;
 use crate::torque_channel::torque_channels;
@@ -175,6 +177,39 @@ fn has_currents(axis: &Axis) -> bool {
 /// [`LogError`] without `position_m` and `position_rad`.
 pub fn position_in(log: &Log) -> Result<&[f64], LogError> {
     either(log, ["position_m", "position_rad"])
+}
+
+/// The motor's angle in a log.
+const ANGLE: &str = "motor_angle_rad";
+
+/// The channel of the load's position where a log of this axis must have it; `None` if the axis has no
+/// sensor at the load, so that the motor's angle shows all there is ([`position_shown`]).
+pub fn needed_position(axis: &Axis) -> Option<&'static str> {
+    (!reads_load_from_motor(axis)).then(|| axis.position_channel())
+}
+
+fn reads_load_from_motor(axis: &Axis) -> bool {
+    matches!(axis.sensors.load, LoadSensor::Missing) && has_motor_encoder(axis)
+}
+
+/// The load's position in a log as the drive of this axis has it, m or rad: its channel or, where there is
+/// none and the axis has no sensor at the load, the motor's angle times the travel per radian, homed on
+/// the first sample of the position reference where the log has one.
+///
+/// # Errors
+/// [`LogError`] without either.
+pub fn position_shown<'a>(log: &'a Log, axis: &Axis) -> Result<Cow<'a, [f64]>, LogError> {
+    let own = position_in(log).map(Cow::Borrowed);
+    let (Err(_), true, Ok(angle)) = (&own, reads_load_from_motor(axis), log.channel(ANGLE)) else {
+        return own;
+    };
+    let travel = axis.travel_per_radian();
+    let first = reference_in(log).ok().and_then(|r| r.first());
+    let home = match (first, angle.first()) {
+        (Some(reference), Some(angle)) => reference - travel * angle,
+        _ => 0.0,
+    };
+    Ok(angle.iter().map(|angle| home + travel * angle).collect())
 }
 
 /// The position reference in a log, m or rad.

@@ -134,7 +134,8 @@ pub use balance::{
 };
 pub use channels::{
     CHANNELS, ChannelPart, EXCITATIONS, LogChannel, channels, commanded_channels,
-    excitation_channel, excitation_in, known_channels, position_in, reference_in,
+    excitation_channel, excitation_in, known_channels, needed_position, position_in,
+    position_shown, reference_in,
 };
 pub use closed_loop::{ClosedLoop, LoopState};
 pub use control_difference::{ControlDifference, control_differences};

@@ -326,6 +326,17 @@ impl<T: Scalar> Kinematics<T> {
         self.amplitude * sin
     }
 
+    /// By how much more than r the load moves per radian at the motor's angle θ (rad), m/rad or rad/rad: as
+    /// much more of a lever a force on the load has at the motor.
+    #[must_use]
+    pub fn growth(&self, angle: T) -> T {
+        if self.amplitude == T::ZERO {
+            return T::ZERO;
+        }
+        let (_, cos) = (self.order * angle + self.phase).sin_cos();
+        self.amplitude * self.order * cos
+    }
+
     /// Each value rounded to the nearest number of another scalar.
     #[must_use]
     pub fn cast<U: Scalar>(&self) -> Kinematics<U> {

@@ -84,7 +84,8 @@ fn plan(kinematics: Kinematics, angle: f64) -> Vec<Planned> {
 }
 
 /// The load is where the reference is: r (θ − θ₀) + e(θ) − e(θ₀) = x; and the planned speed is
-/// that of the planned angle, the torque that of its acceleration.
+/// that of the planned angle, the torque that of its acceleration and of the force on the load, which
+/// has the lever dx/dθ there.
 #[test]
 fn an_error_of_the_kinematics_is_taken_up_by_the_motor() {
     let kinematics = Kinematics {
@@ -97,7 +98,7 @@ fn an_error_of_the_kinematics_is_taken_up_by_the_motor() {
     let without = plan(Kinematics::default(), start);
     let with = plan(kinematics, start);
     let angle = |p: &Planned| start + p.position / TRAVEL + p.wind_up;
-    let mut largest = 0.0_f64;
+    let (mut largest, mut reacted) = (0.0_f64, 0.0_f64);
     for (k, p) in with.iter().enumerate().skip(1).take(with.len() - 2) {
         let at = angle(p);
         let load = TRAVEL * (at - start) + kinematics.ahead(at) - kinematics.ahead(start);
@@ -109,10 +110,15 @@ fn an_error_of_the_kinematics_is_taken_up_by_the_motor() {
         assert!((speed - p.motor_speed).abs() < 1e-3 * 0.5 / TRAVEL * 0.03);
         let second = (after - 2.0 * at + before) / (T * T) - p.reference.acceleration / TRAVEL;
         let torque = p.torque - without[k].torque;
-        assert!((torque - 1e-4 * second).abs() < 2e-4, "{torque} {second}");
+        let force = (without[k].torque - 1e-4 * p.reference.acceleration / TRAVEL) / TRAVEL;
+        let moved = |by: f64| kinematics.ahead(at + by);
+        let reaction = (moved(1e-4) - moved(-1e-4)) / 2e-4 * force;
+        let off = torque - 1e-4 * second - reaction;
+        assert!(off.abs() < 2e-4, "{torque} {second} {reaction}");
         largest = largest.max(torque.abs());
+        reacted = reacted.max(reaction.abs());
     }
-    assert!(largest > 0.05, "{largest}");
+    assert!(largest > 0.05 && reacted > 2e-3, "{largest} {reacted}");
 }
 
 /// Free travel moves the motor by half of it to the side that it pushes from, without a step,

@@ -476,3 +476,22 @@ fn several_effects_do_not_stand_for_one_law() {
     };
     assert!(low < 24.0 && 24.0 < high && high - low < 5.0, "{formula}");
 }
+
+/// A load that repeats every 0.27 s, between the periods that the library begins at. Accepted, it was begun from those alone
+/// and ended at another period.
+#[test]
+fn an_accepted_load_that_repeats_is_begun_where_the_logs_show_it() {
+    let load = vec![6.0, 0.27, 0.7];
+    let hidden = hide_in(&stage(), vec![("cyclic-load", load)], 31);
+    let settings = Settings {
+        accepted: vec!["cyclic-load".to_owned()],
+        most_effects: 1,
+        ..Settings::default()
+    };
+    let found = find_on_stage(&hidden, Exercise::SlowAndFast, &settings);
+    let [effect] = &found.effects[..] else {
+        panic!("{}", found.sentence);
+    };
+    let period = effect.parameters[1].value;
+    assert!((period / 0.27 - 1.0).abs() < 0.01, "{period}");
+}

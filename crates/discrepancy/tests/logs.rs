@@ -2,9 +2,13 @@
 //! what would be valid; one that starts in motion is told.
 
 use axis_log::{Channel, Log};
-use axis_sim::Axis;
-use discrepancy::logs::{LogSetError, check_distinct, check_log, from_rest};
+use axis_sim::{Axis, ClosedLoop, Recorder, position_shown};
+use compensator::NoCompensation;
+use discrepancy::logs::{
+    LogSetError, admit, check_distinct, check_log, from_rest, needed_channels,
+};
 use discrepancy::{LogSet, State};
+use trajectories::{Limits, Program, Step};
 
 const PERIOD: f64 = 1e-3;
 
@@ -262,4 +266,57 @@ fn a_long_hole_is_refused_and_a_short_one_has_no_weight() {
     let rest = &set.rest(&traces)[0][channel];
     assert!(rest[300..305].iter().all(|r| *r == 0.0));
     assert!(rest[299] != 0.0 && rest[305] != 0.0);
+}
+
+/// A robot joint has no sensor at its load: a log of the motor's angle and the command is all that its drive has. Its log
+/// was refused for want of `position_rad`.
+#[test]
+fn a_joint_without_a_sensor_at_the_load_is_replayed_by_its_motors_angle() {
+    let joint = machine("joint");
+    let start = joint.stroke.start;
+    let limits = Limits::new(0.8, 3.0, 30.0).unwrap();
+    let turn = |to: f64| Step::Move { to, limits };
+    let rest = Step::Dwell { duration: 0.3 };
+    let steps = vec![rest, turn(start + 0.4), rest, turn(start + 0.1), rest];
+    let program = Program::new(start, steps).unwrap();
+    let mut recorder = Recorder::new(&joint);
+    ClosedLoop::new(&joint)
+        .unwrap()
+        .without_noise()
+        .run(&program, &mut NoCompensation, |c| recorder.push(c))
+        .completed()
+        .unwrap();
+    let whole = recorder.log().unwrap();
+    let without = |names: &[&str]| {
+        let kept = whole.channels().iter();
+        let kept = kept.filter(|c| !names.contains(&c.name.as_str()));
+        Log::new(kept.cloned().collect()).unwrap()
+    };
+    assert_eq!(needed_channels(&joint), ["position_ref_rad"]);
+    let log = without(&["position_rad"]);
+    let shown = position_shown(&log, &joint).unwrap();
+    let own = whole.channel("position_rad").unwrap();
+    // Homed on the reference, and not where the encoder's step left it.
+    let off = shown.iter().zip(own).map(|(a, b)| (a - b).abs());
+    assert!(off.fold(0.0, f64::max) < 1e-6);
+    let (_, log, period) = admit("joint.csv".to_owned(), log, &joint, &mut Vec::new()).unwrap();
+    let logs = vec![("joint.csv".to_owned(), log, period)];
+    let set = LogSet::new(logs, &joint).unwrap();
+    assert_eq!(set.channels, ["motor_angle_rad", "torque_ref_n_m"]);
+    let rest = set.rest(&set.simulate(&joint, &State::initial(&joint)).unwrap());
+    let most = |c: usize| rest[0][c].iter().fold(0.0_f64, |most, r| most.max(r.abs()));
+    println!("{:.1e} rad, {:.1e} N·m", most(0), most(1));
+    assert!(most(0) < 1e-2 && most(1) < 0.02, "{} {}", most(0), most(1));
+    // Nothing shows where the arm is:
+    let blind = without(&["position_rad", "motor_angle_rad"]);
+    let error = check_log("joint.csv", &blind, &joint)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("motor_angle_rad") && error.contains("position_rad"),
+        "{error}"
+    );
+    // With a sensor at the load its channel is needed.
+    let needed = needed_channels(&machine("rack"));
+    assert_eq!(needed, ["position_ref_m", "position_m"]);
 }

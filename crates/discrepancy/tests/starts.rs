@@ -333,3 +333,53 @@ fn a_log_is_cut_and_begun_where_the_axis_stands_and_not_its_reference_alone() {
     assert!(note.unwrap().contains("first standstill"));
     assert!(left(&begun) < 5e-6, "{:e} m", left(&begun));
 }
+
+/// The joint's position loop runs in every fourth cycle. A log of one sample in its period, taken from any of these
+/// cycles, is replayed from that one.
+#[test]
+fn a_log_between_the_ticks_of_a_slower_loop_is_begun_there() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/joint.toml");
+    let mut joint = Axis::read(file.as_ref()).unwrap();
+    joint.sensors = axis_sim::Sensors::default();
+    let start = joint.stroke.start;
+    let limits = Limits::new(0.8, 3.0, 30.0).unwrap();
+    let turn = |to: f64| Step::Move { to, limits };
+    let rest = Step::Dwell { duration: 0.2 };
+    let steps = vec![rest, turn(start + 0.3), rest, turn(start + 0.1), rest];
+    let mut recorder = Recorder::new(&joint);
+    ClosedLoop::new(&joint)
+        .unwrap()
+        .run(
+            &Program::new(start, steps).unwrap(),
+            &mut NoCompensation,
+            |c| recorder.push(c),
+        )
+        .completed()
+        .unwrap();
+    let whole = recorder.log().unwrap();
+    let state = State::initial(&joint);
+    for phase in 0..4 {
+        let log = whole.skip(phase).unwrap().decimate(4).unwrap();
+        let logs = vec![("log.csv".to_owned(), log, 4.0 * joint.period)];
+        let mut set = LogSet::new(logs, &joint).unwrap();
+        let command = set
+            .channels
+            .iter()
+            .position(|c| *c == "torque_ref_n_m")
+            .unwrap();
+        let left = |set: &LogSet| {
+            let rest = set.rest(&set.simulate(&joint, &state).unwrap());
+            let squares: f64 = rest[0][command].iter().map(|r| r * r).sum();
+            (squares / rest[0][command].len() as f64).sqrt()
+        };
+        let found = left(&set);
+        let Answer::Replay(replay) = set.logs[0].answer.clone() else {
+            panic!("no replay");
+        };
+        assert_eq!(replay.ticks() as usize, phase);
+        set.logs[0].answer = Answer::Replay(Box::new(replay.ticked(0)));
+        let at_first = left(&set);
+        println!("{phase}: {found:.1e} N·m, {at_first:.1e} begun with the first sample");
+        assert!(phase == 0 || found < 0.1 * at_first, "{found} {at_first}");
+    }
+}

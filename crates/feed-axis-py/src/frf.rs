@@ -1,7 +1,7 @@
 //! Frequency responses of an axis, estimated from its logs.
 
 use axis_log::intake::Options;
-use axis_sim::known_channels;
+use axis_sim::{known_channels, needed_position};
 use drive_loop::{MeasureSettings, MeasuredDrive};
 use pyo3::prelude::*;
 
@@ -51,7 +51,7 @@ impl PyAxis {
             exact: &exact,
             ..Options::default()
         };
-        let needed = [self.axis.position_channel()];
+        let needed: Vec<&str> = needed_position(&self.axis).into_iter().collect();
         let mut read = Vec::new();
         for (i, log) in each_log(logs)?.iter().enumerate() {
             let name = format!("{name}[{i}]");

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use axis_pipeline::identification::identify_from_logs;
 use axis_pipeline::learning::StoredCorrection;
+use axis_sim::needed_position;
 use compensator::Advice;
 use lugre::LuGre;
 use pyo3::prelude::*;
@@ -89,7 +90,11 @@ pub(crate) fn learn<'py>(
     columns: Renamed,
 ) -> PyResult<(MoveCorrection, Bound<'py, PyDict>)> {
     let axis = &*axis.axis;
-    let needed = [axis.reference_channel(), axis.position_channel()];
+    let position = needed_position(axis).into_iter();
+    let needed: Vec<&str> = [axis.reference_channel()]
+        .into_iter()
+        .chain(position)
+        .collect();
     let (_, log) = whole_log_of(log, "log", axis, &needed, &columns, &mut Vec::new())?;
     let mut next = match correction {
         Some(correction) => correction.0.clone(),

@@ -115,6 +115,16 @@ impl Hidden {
         self.cogging.map_or(0.0, one)
     }
 
+    /// By how much more than `travel` (m/rad) the table moves per radian at time `t` and screw angle `angle`: so
+    /// much more of a lever the nut's force has on the screw, as no power is lost between them.
+    pub fn growth(&self, t: f64, angle: f64, travel: f64) -> f64 {
+        let of_lead = |lead: Periodic| lead.amplitude * (angle + lead.phase).cos();
+        let grown = self.thermal.map_or(0.0, |thermal| {
+            thermal.strain * (1.0 - (-t.max(0.0) / thermal.time).exp())
+        });
+        self.lead.map_or(0.0, of_lead) + travel * grown / (1.0 - grown)
+    }
+
     /// By how much the table is ahead of the screw at time `t`, m, and the rate of that,
     /// m/s; `screw` is the angle at the nut and its rate, `table` place and speed.
     pub fn ahead(&self, t: f64, screw: [f64; 2], table: [f64; 2]) -> [f64; 2] {

@@ -5,7 +5,7 @@
 //! wind-up where a log begins.
 //!
 //! ```text
-//! 1 kg·m² m'' = T − S          2 kg·m² x'' = S − (6 + e^−(v/35 mrad/s)²) N·m arctan(…) − 8 N·m·s/rad v − G cos(x − x₀) − F
+//! 1 kg·m² m'' = T − (1 + 200 e cos(200 m + φ)) S          2 kg·m² x'' = S − (6 + e^−(v/35 mrad/s)²) N·m arctan(…) − 8 N·m·s/rad v − G cos(x − x₀) − F
 //! S = 2.5e4 N·m/rad (m − x + e sin(200 m + φ)) + 5 N·m·s/rad (m' − x')
 //! ```
 //! at the arm, `m` being the motor's angle over 100.
@@ -50,8 +50,15 @@ pub fn joint_log(joint: &Joint, moves: &[[f64; 3]], random: &mut Random) -> Tabl
     let motion = reference(start, moves);
     let gravity = |x: f64| joint.gravity * (x - joint.level_at).cos();
     let held = gravity(start) + joint.spring * start + joint.load;
-    let (mut x, mut v, mut m, mut w) = (start, 0.0, start + held / 2.5e4, 0.0);
-    let (mut integral, mut command, mut torque, mut last) = (held, held, held, m);
+    // The gear's error at the motor's angle, and what a force on the arm has for a lever there.
+    let gear = |m: f64| {
+        let (sin, cos) = (2.0 * RATIO * m + joint.error_phase).sin_cos();
+        (ERROR * sin, 1.0 + 2.0 * RATIO * ERROR * cos)
+    };
+    let (mut x, mut v, mut w) = (start, 0.0, 0.0);
+    let mut m = (0..20).fold(start, |m, _| start + held / 2.5e4 - gear(m).0);
+    let holding = gear(m).1 * held;
+    let (mut integral, mut command, mut torque, mut last) = (holding, holding, holding, m);
     let mut rows = Vec::new();
     for (k, &[wanted, speed]) in motion.iter().enumerate() {
         if k % CONTROL == 0 {
@@ -67,12 +74,12 @@ pub fn joint_log(joint: &Joint, moves: &[[f64; 3]], random: &mut Random) -> Tabl
             rows.push(vec![k as f64 * STEP, angle, command / RATIO + noise]);
         }
         torque += (command - torque) * STEP * TAU * 500.0;
-        let error = ERROR * (2.0 * RATIO * m + joint.error_phase).sin();
+        let (error, lever) = gear(m);
         let spring = 2.5e4 * (m - x + error) + 5.0 * (w - v);
         let dry = 6.0 + (-(v / 0.035) * (v / 0.035)).exp();
         let friction = dry * FRAC_2_PI * (v / 3e-3).atan() + 8.0 * v;
         let load = friction + gravity(x) + joint.spring * x + joint.load;
-        w += STEP * (torque - spring);
+        w += STEP * (torque - lever * spring);
         m += STEP * w;
         v += STEP * (spring - load) / 2.0;
         x += STEP * v;

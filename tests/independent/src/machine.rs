@@ -54,6 +54,8 @@ struct Contact {
     /// Compression without force of nut and at the table's old place, m, and its rate
     /// with a table at rest.
     open: [f64; 2],
+    /// Travel of the table per radian there, m/rad.
+    lever: f64,
     /// Rate at the nut per torque.
     mobility: f64,
     /// Share of the damping that acts.
@@ -157,7 +159,7 @@ impl Machine {
         }
         let force = self.nut_force(&contact, w);
         self.chain
-            .load(&mut middle, &contact.nut, -self.travel * force);
+            .load(&mut middle, &contact.nut, -contact.lever * force);
         // From the middle to the end: as far again.
         let [bristle, _] = self.against(w);
         self.bristle += 2.0 * (bristle - self.bristle);
@@ -187,6 +189,7 @@ impl Machine {
         let table = [place, self.table[1]];
         let [ahead, ahead_rate] = self.hidden.ahead(self.time + half, screw, table);
         let ahead = ahead - self.ahead_at_start;
+        let growth = (self.hidden).growth(self.time + half, screw[0], self.travel);
         let gap = 0.5 * self.hidden.backlash;
         let pressed = (self.travel * turned + ahead - self.table[0]).abs() - gap;
         let damped = match gap > 0.0 {
@@ -198,6 +201,7 @@ impl Machine {
                 self.travel * angle + ahead - self.table[0],
                 self.travel * rate + ahead_rate,
             ],
+            lever: self.travel + growth,
             mobility: self.chain.mobility(&nut),
             nut,
             damped,
@@ -209,7 +213,7 @@ impl Machine {
         let half = 0.5 * self.step;
         let (k, c) = (self.nut_stiffness, contact.damped * self.nut_damping);
         // Per newton the nut gives way by this rate, and half a step of it.
-        let yields = self.travel * self.travel * contact.mobility;
+        let yields = contact.lever * contact.lever * contact.mobility;
         let whole = 1.0 + yields * (k * half + c);
         let flank = |gap: f64| {
             let pressed = contact.open[0] - half * w - gap;

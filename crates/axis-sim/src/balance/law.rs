@@ -56,17 +56,21 @@ impl Motions {
     }
 }
 
+/// Share of the greatest speed of a log below which its load stands where the log begins.
+const STANDS: f64 = 1e-3;
+
 /// Rounds in which a torque is found of which the ripple depends on itself.
 const ROUNDS: usize = 30;
 
 /// Motor torque, N·m, that `axis` (its effects made) needs at each sample.
 ///
 /// ```text
-/// T + T_hooks(θ, T) = Σ J_i ((1 − s_i) α + s_i (a − ö) / r) + r (m a + F_friction(v, z) + F_loads(x, v, t))
+/// T + T_hooks(θ, T) = Σ J_i ((1 − s_i) α + s_i (a − ö) / r) + r (m a + F) + do/dθ (m r α + F),   F = F_friction(v, z) + F_loads(x, v, t)
 /// ```
 ///
-/// with the acceleration ö of an error of the transmission's kinematics, which the load has beside the
-/// screw.
+/// with an error o of the transmission's kinematics, which the load has beside the screw, and its acceleration
+/// ö. What reacts on the motor by do/dθ counts with the motor's acceleration for the load's: what the error
+/// itself adds to that is of second order, and lies where the low-pass has taken it out of the motion.
 pub(super) fn torque(axis: &Axis, hooks: &Hooks, ends: &Ends, h: f64) -> Vec<f64> {
     let Ends {
         load,
@@ -78,11 +82,16 @@ pub(super) fn torque(axis: &Axis, hooks: &Hooks, ends: &Ends, h: f64) -> Vec<f64
     let lagging = lagging(axis, load);
     let inertia = axis.mechanism.total_inertia() - mass * r * r - lagging;
     let offset = offset_acceleration(hooks, ends, h);
+    let growth = |k: usize| match &offset {
+        Some(_) => hooks.offset_at(&screw_state(load, motor, k, h))[2],
+        None => 0.0,
+    };
     let one = |(k, force): (usize, f64)| {
         let [of_load, of_motor] = [load.acceleration[k], motor.acceleration[k]];
         let of_screw = of_load - offset.as_ref().map_or(0.0, |o| o[k]);
         let rotation = inertia * of_motor + lagging * of_screw / r;
-        let all = rotation + r * (mass * of_load + force);
+        let reaction = growth(k) * (mass * r * of_motor + force);
+        let all = rotation + r * (mass * of_load + force) + reaction;
         own(hooks, motor.position[k], all)
     };
     forces.iter().copied().enumerate().map(one).collect()
@@ -182,7 +191,7 @@ fn shifted(hooks: &Hooks, motions: &Motions, motor: &Course, h: f64) -> Option<C
     }
     let load = &motions.load;
     let at = |k: usize| hooks.offset_at(&screw_state(load, motor, k, h));
-    let offsets: Vec<[f64; 2]> = (0..load.position.len()).map(at).collect();
+    let offsets: Vec<[f64; 3]> = (0..load.position.len()).map(at).collect();
     let origin = offsets.first().map_or(0.0, |o| o[0]);
     let rates: Vec<f64> = offsets.iter().map(|o| o[1]).collect();
     let add = |to: &[f64], by: &[f64]| to.iter().zip(by).map(|(a, b)| a + b).collect();
@@ -206,25 +215,26 @@ pub(super) fn screw_state(load: &Course, motor: &Course, k: usize, h: f64) -> Sc
     }
 }
 
-/// By how much the motor is ahead of the load where the log begins: the wind-up there, less the error of the
-/// transmission's kinematics, rad of the motor. In an angle that was homed on the load as it stands there,
-/// what repeats with the motor's turn has that much more of a phase; by an angle of the motor's own, the load is that much behind.
+/// By how much the motor is ahead of the load where the log begins: the wind-up there, rad of the motor. An error
+/// of the transmission's kinematics counts from there on, as in a simulation. In an angle that was homed on the load as
+/// it stands there, what repeats with the motor's turn has that much more of a phase; by an angle of the motor's own,
+/// the load is that much behind.
 fn ahead_at_start(axis: &Axis, hooks: &Hooks, motions: &Motions, h: f64) -> f64 {
     let Some(wind_up) = motions.wind_up.filter(|_| motions.load_is_derived) else {
         return 0.0;
     };
-    let Some(load) = motions.load.first() else {
+    let Some(mut load) = motions.load.first() else {
         return 0.0;
     };
+    // At a standstill the friction may have either sign: its mean.
+    let speeds = motions.load.speed.iter();
+    let most = speeds.fold(0.0_f64, |most, v| most.max(v.abs()));
+    load.speed.retain(|v| v.abs() > STANDS * most);
+    load.speed.resize(1, 0.0);
     let force = forces(axis, hooks, &load, motions.spring(axis), h)[0];
     let [stiffness, _] = wind_up.of(axis);
     let wound = (force + axis.mechanism.load_inertia() * load.acceleration[0]) / stiffness;
-    let r = axis.travel_per_radian();
-    let Some(mut motor) = motions.motor.first().filter(|_| hooks.has_offsets()) else {
-        return wound / r;
-    };
-    motor.position[0] += wound / r;
-    (wound - hooks.offset_at(&screw_state(&load, &motor, 0, h))[0]) / r
+    wound / axis.travel_per_radian()
 }
 
 /// Forces on the load, against positive motion, N or N·m: friction, whose bristles go along

@@ -62,6 +62,13 @@ impl ClosedLoop {
         Ok(state)
     }
 
+    /// Lets a run begin so many cycles after one in which all loops of the control ran.
+    pub(crate) fn begin_after(&self, state: &mut LoopState, cycles: u32) {
+        let every = self.sampling.speed_every;
+        state.controller.begin_after(cycles);
+        state.speed_due = (every - cycles % every) % every;
+    }
+
     /// Machine and actuator settled, and the command that takes, as the sensors show it.
     fn settled(&self, start: &Start) -> Result<Settled, SetupError> {
         let plant = self.plant.clone().start(start)?;

@@ -197,6 +197,13 @@ impl Control for Cascade {
         every("speed_rate", self.speed_rate, period).unwrap_or(1)
     }
 
+    fn ticks(&self, period: f64) -> u32 {
+        let position = every("position_rate", self.position_rate, period).unwrap_or(1);
+        let speed = self.speed_every(period);
+        let least = (1..=speed).find(|by| (position * by).is_multiple_of(speed));
+        position * least.unwrap_or(1)
+    }
+
     fn cascade(&self, travel: f64, period: f64) -> Option<compensator::Cascade> {
         Some(compensator::Cascade {
             position: self.velocity_gain(travel)? / travel,
@@ -394,6 +401,10 @@ impl Controller for State {
             effort,
             ..Demand::default()
         };
+    }
+
+    fn begin_after(&mut self, cycles: u32) {
+        self.cycle = u64::from(cycles);
     }
 
     fn cycle(&mut self, s: &Situation<'_>) -> Demand {

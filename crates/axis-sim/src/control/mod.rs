@@ -114,6 +114,12 @@ pub trait Control: fmt::Debug + Send + Sync {
         1
     }
 
+    /// Control periods, of `period` seconds each, after which all of its loops run in one cycle again: 1 if all of them
+    /// run in each.
+    fn ticks(&self, _period: f64) -> u32 {
+        1
+    }
+
     /// The unit in which its gains give the actuator's command, where they are tied to one.
     fn effort(&self) -> Option<Effort> {
         None
@@ -169,6 +175,10 @@ pub trait Controller: fmt::Debug + Send + Sync {
     /// Brings it into the state that it has when it holds `effort` with all errors at
     /// zero, the sensors showing `measured`, the load moving at `speed`.
     fn settle(&mut self, effort: f64, measured: &Measured, speed: f64);
+
+    /// Makes its next cycle the one that comes so many after a cycle in which all of its loops ran
+    /// ([`Control::ticks`]); as it starts, that is the next.
+    fn begin_after(&mut self, _cycles: u32) {}
 
     /// One control cycle.
     fn cycle(&mut self, situation: &Situation<'_>) -> Demand;

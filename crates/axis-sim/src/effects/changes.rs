@@ -77,9 +77,12 @@ impl Changes<'_> {
         self.hooks.torque(torque);
     }
 
-    /// Adds a displacement of the load on its transmission, and its rate: m, m/s or rad,
-    /// rad/s. Only how it changes from the start on counts.
-    pub fn offset(&mut self, offset: impl Fn(&ScrewState) -> [f64; 2] + Send + Sync + 'static) {
+    /// Adds a displacement o of the load on its transmission, its rate, and its derivative do/dθ
+    /// over the motor's angle: m, m/s, m/rad or rad, rad/s, rad/rad. Of o only how it changes
+    /// from the start on counts. By do/dθ the force F of the transmission reacts on the motor beside
+    /// the travel r per radian, with the torque −F (r + do/dθ), so that what the motor
+    /// gives is what the load gets; 0 of a displacement that does not come from the motor's turning.
+    pub fn offset(&mut self, offset: impl Fn(&ScrewState) -> [f64; 3] + Send + Sync + 'static) {
         self.hooks.offset(offset);
     }
 

@@ -35,7 +35,8 @@ fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError
     let (compliance, per_force) = (1.0 / to.stiffness(), v[0] / to.greatest_force());
     to.offset(move |s| {
         let harder = per_force * s.transmitted.abs();
-        [compliance * s.transmitted * (harder / (1.0 + harder)), 0.0]
+        let shorter = compliance * s.transmitted * (harder / (1.0 + harder));
+        [shorter, 0.0, 0.0]
     });
     Ok(())
 }

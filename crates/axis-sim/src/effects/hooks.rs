@@ -11,7 +11,7 @@ type Load = Arc<dyn Fn(&TableState) -> f64 + Send + Sync>;
 
 type Torque = Arc<dyn Fn(f64, f64) -> f64 + Send + Sync>;
 
-type Offset = Arc<dyn Fn(&ScrewState) -> [f64; 2] + Send + Sync>;
+type Offset = Arc<dyn Fn(&ScrewState) -> [f64; 3] + Send + Sync>;
 
 /// Where the loop calls effects. The default has none, and costs nothing.
 #[derive(Clone, Default)]
@@ -62,8 +62,8 @@ impl Hooks {
         self.torques.push(Arc::new(torque));
     }
 
-    /// Adds a displacement of the nut, and its rate: m, m/s.
-    pub fn offset(&mut self, offset: impl Fn(&ScrewState) -> [f64; 2] + Send + Sync + 'static) {
+    /// Adds a displacement of the nut, its rate, and how it grows with the motor's angle: m, m/s, m/rad.
+    pub fn offset(&mut self, offset: impl Fn(&ScrewState) -> [f64; 3] + Send + Sync + 'static) {
         self.offsets.push(Arc::new(offset));
     }
 
@@ -92,10 +92,11 @@ impl Hooks {
         self.torques.iter().fold(torque, added)
     }
 
-    pub(crate) fn offset_at(&self, screw: &ScrewState) -> [f64; 2] {
-        self.offsets.iter().fold([0.0; 2], |sum, hook| {
-            let [by, rate] = hook(screw);
-            [sum[0] + by, sum[1] + rate]
+    /// Displacement, rate and growth with the motor's angle of all together.
+    pub(crate) fn offset_at(&self, screw: &ScrewState) -> [f64; 3] {
+        self.offsets.iter().fold([0.0; 3], |sum, hook| {
+            let own = hook(screw);
+            std::array::from_fn(|i| sum[i] + own[i])
         })
     }
 }

@@ -41,10 +41,8 @@ fn install(values: &[f64], to: &mut Changes<'_>) -> Result<(), SetupError> {
 /// load) and phase (rad).
 pub(super) fn add(to: &mut Changes<'_>, order: f64, [amplitude, phase]: [f64; 2]) {
     to.offset(move |s| {
-        let at = order * s.angle + phase;
-        [
-            amplitude * at.sin(),
-            amplitude * (order * s.rate) * at.cos(),
-        ]
+        let (sin, cos) = (order * s.angle + phase).sin_cos();
+        let growth = amplitude * order * cos;
+        [amplitude * sin, growth * s.rate, growth]
     });
 }

@@ -17,6 +17,7 @@ pub(super) const EFFECT: Effect = Effect {
 fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 1] = super::changes::array(values);
     let r = to.travel_per_radian();
-    to.offset(move |s| [v[0] * r * s.angle, v[0] * r * s.rate]);
+    let growth = v[0] * r;
+    to.offset(move |s| [growth * s.angle, growth * s.rate, growth]);
     Ok(())
 }

@@ -1,4 +1,6 @@
 //! `thermal-expansion`: thermal growth of the transmission over time.
+//!
+//! The load is at x = r θ + ε x, so that it moves by dx/dθ = r/(1 − ε) with the motor.
 
 use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, Nature, shape, signed};
 use crate::error::SetupError;
@@ -25,12 +27,14 @@ pub(super) const EFFECT: Effect = Effect {
 
 fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 2] = super::changes::array(values);
+    let r = to.travel_per_radian();
     to.offset(move |s| {
         let left = (-s.time / v[1]).exp();
         let grown = v[0] * (1.0 - left);
         [
             grown * s.position,
             v[0] * left / v[1] * s.position + grown * s.speed,
+            r * grown / (1.0 - grown),
         ]
     });
     Ok(())

@@ -64,6 +64,7 @@ fn build(v: &Values) -> Result<Arc<dyn Mechanism>, PartError> {
 fn harmonic(amplitude: f64, order: f64, phase: f64) -> KinematicError {
     Arc::new(move |screw: &ScrewState| {
         let (sin, cos) = (order * screw.angle + phase).sin_cos();
-        [amplitude * sin, amplitude * order * screw.rate * cos]
+        let growth = amplitude * order * cos;
+        [amplitude * sin, growth * screw.rate, growth]
     })
 }

@@ -60,9 +60,9 @@ pub struct ScrewShape {
     pub held_at_both_ends: Option<f64>,
 }
 
-/// An error of a transmission's kinematics: displacement and rate at the load,
-/// m and m/s or rad and rad/s.
-pub type KinematicError = Arc<dyn Fn(&ScrewState) -> [f64; 2] + Send + Sync>;
+/// An error of a transmission's kinematics: displacement at the load, its rate, and its derivative over the
+/// motor's angle, as [`Changes::offset`](crate::effects::Changes::offset) has them.
+pub type KinematicError = Arc<dyn Fn(&ScrewState) -> [f64; 3] + Send + Sync>;
 
 /// A mechanism. Positions, forces and masses are the load's ([`Freedom`]).
 pub trait Mechanism: fmt::Debug + Send + Sync {

@@ -13,7 +13,7 @@ use lugre::LugreError;
 use thiserror::Error;
 
 use crate::axis::{Axis, LoadSensor};
-use crate::effects::{ActiveEffect, EffectParameter, Hooks, Measure, TableState};
+use crate::effects::{ActiveEffect, EffectParameter, Hooks, Measure, ScrewState, TableState};
 use crate::error::SetupError;
 use crate::mechanism::Mechanism;
 use crate::part::Part;
@@ -34,6 +34,10 @@ pub enum PlanModelError {
     Plan(#[from] CompensatorError),
 }
 
+/// Rounds in which the lever is found that a force has at the motor: each shrinks what is off by the share
+/// that an error of the kinematics changes the travel by.
+const LEVER_ROUNDS: usize = 4;
+
 impl Axis {
     /// Rest at `position` as a log tells it: the drive held the axis with the command `effort`
     /// (the mean over a standstill, where that is noisy), and what the axis' own loads do not
@@ -51,7 +55,7 @@ impl Axis {
     pub fn held(&self, position: f64, effort: f64) -> Start {
         let r = self.travel_per_radian();
         let level = self.friction.law.parameters().coulomb / self.friction.lever(r);
-        let held = self.torque_constant() * effort / r - self.load_at(position);
+        let held = self.force_of(effort, position) - self.load_at(position);
         Start {
             friction: if level > 0.0 {
                 (held / level).clamp(-1.0, 1.0)
@@ -60,6 +64,25 @@ impl Axis {
             },
             ..Start::at(position)
         }
+    }
+
+    /// Force of the transmission on the load at rest at `position` under a command, N or N·m: the motor's
+    /// torque over the travel per radian, which an error of the transmission's kinematics changes.
+    fn force_of(&self, effort: f64, position: f64) -> f64 {
+        let (r, torque) = (self.travel_per_radian(), self.torque_constant() * effort);
+        let Some(error) = self.mechanism.kinematic_error() else {
+            return torque / r;
+        };
+        let compliance = self.mechanism.compliance(position);
+        // The force moves the angle by little, and by it the lever by less.
+        (0..LEVER_ROUNDS).fold(torque / r, |force, _| {
+            let [.., growth] = error(&ScrewState {
+                angle: position / r + compliance * r * force,
+                position,
+                ..ScrewState::default()
+            });
+            torque / (r + growth)
+        })
     }
 
     /// Everything that a plan of this axis is made from.

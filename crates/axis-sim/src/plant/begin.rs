@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use feed_dynamics::{DriveError, TimeStepper};
+use feed_dynamics::{DriveError, Observation, TimeStepper};
 
 use super::law::Law;
 use super::state::State;
@@ -18,7 +18,6 @@ where
         let motion = self.settled(start);
         let drive = self.stepper.settled(start.position, &motion)?;
         let at = self.stepper.observe(&drive);
-        let torque = self.stepper.settled_torque(start.position, &motion);
         let [bristle, unit_bristle] = self.bristles(start);
         let mut state = State {
             origin: start.position,
@@ -38,16 +37,36 @@ where
             drive,
         };
         let origins = [state.origin, state.motor_origin];
-        state.seen = Seen::of(&at, origins, start.time, torque, motion.load);
-        let (angle, force) = (state.seen.motor_angle, state.seen.transmission_force);
-        let screw = state.seen.screw(start.time, angle, force);
-        let [offset, _] = state.law.assembly.hooks.offset_at(&screw);
+        let ([offset, _, growth], force) = state.law.kinematics(start, &at);
         state.offset_origin = offset;
+        let law = &state.law;
+        let torque = law.stepper.settled_torque(start.position, &motion) + growth * force;
+        state.seen = Seen::of(&at, origins, start.time, torque, motion.load);
         Ok(Box::new(state))
     }
 
     fn torque(&self, start: &Start) -> f64 {
         let motion = self.settled(start);
-        self.stepper.settled_torque(start.position, &motion)
+        let torque = self.stepper.settled_torque(start.position, &motion);
+        if !self.assembly.hooks.has_offsets() {
+            return torque;
+        }
+        let drive = self.stepper.settled(start.position, &motion);
+        drive.map_or(torque, |drive| {
+            let ([.., growth], force) = self.kinematics(start, &self.stepper.observe(&drive));
+            torque + growth * force
+        })
+    }
+}
+
+impl<S: TimeStepper> Law<S> {
+    /// Displacement of the transmission's errors at the start, its rate and its growth with the motor's angle
+    /// ([`crate::effects::Changes::offset`]), and the force of the transmission there.
+    fn kinematics(&self, start: &Start, at: &Observation) -> ([f64; 3], f64) {
+        let origins = [start.position, start.position / self.travel];
+        let seen = Seen::of(at, origins, start.time, 0.0, 0.0);
+        let force = seen.transmission_force;
+        let screw = seen.screw(start.time, seen.motor_angle, force);
+        (self.assembly.hooks.offset_at(&screw), force)
     }
 }

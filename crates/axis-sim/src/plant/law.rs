@@ -197,9 +197,15 @@ impl<S: TimeStepper> Law<S> {
     }
 
     /// Errors of the transmission's kinematics at the end of a step, where the motor will
-    /// be `at`; `origin` is their displacement when the motion began.
-    pub(super) fn errors(&self, at: &ScrewState, origin: f64) -> Result<NutErrors, DriveError> {
-        let [offset, rate] = self.assembly.hooks.offset_at(at);
-        NutErrors::new(offset - origin, rate, self.assembly.backlash)
+    /// be `at`, and the torque with which its force reacts on the motor by them, N·m; `origin` is
+    /// their displacement when the motion began.
+    pub(super) fn errors(
+        &self,
+        at: &ScrewState,
+        origin: f64,
+    ) -> Result<(NutErrors, f64), DriveError> {
+        let [offset, rate, growth] = self.assembly.hooks.offset_at(at);
+        let errors = NutErrors::new(offset - origin, rate, self.assembly.backlash)?;
+        Ok((errors, -growth * at.transmitted))
     }
 }

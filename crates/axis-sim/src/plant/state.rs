@@ -92,9 +92,13 @@ impl<S: TimeStepper> State<S> {
             let torque = hooks.torque_at(angle, own);
 
             // Mechanics; the friction follows the load's speed at the end of the step.
+            let mut at_drive = torque;
             if hooks.has_offsets() {
                 let force = start.transmission_force + self.force_change;
-                errors = law.errors(&start.screw(time, angle, force), self.offset_origin)?;
+                let at = start.screw(time, angle, force);
+                let (there, reaction) = law.errors(&at, self.offset_origin)?;
+                errors = there;
+                at_drive += reaction;
             }
             let (z0, u0, w0) = (self.bristle, self.unit_bristle, law.by_lever(start.speed));
             let (origin, travelled, memory) = (self.origin, self.travelled, &mut self.memory);
@@ -103,7 +107,7 @@ impl<S: TimeStepper> State<S> {
             let (mut z1, mut u1, mut end_load) = (z0, u0, 0.0);
             let contact = self.contact;
             let mut next_contact = contact;
-            let report = stepper.step_through(&mut self.drive, torque, &errors, |table| {
+            let report = stepper.step_through(&mut self.drive, at_drive, &errors, |table| {
                 let w1 = law.by_lever(table.speed);
                 let own = match (&friction.contact, contact) {
                     (Some(law), Some(state)) => {

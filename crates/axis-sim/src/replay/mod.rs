@@ -18,7 +18,9 @@ use compensator::{Compensator, Correction, Sample};
 use trajectories::Motion;
 
 use crate::axis::Axis;
-use crate::channels::{ChannelPart, LogChannel, channels, excitation_in, position_in};
+use crate::channels::{
+    ChannelPart, LogChannel, channels, excitation_in, position_in, position_shown,
+};
 use crate::effects::{ActiveEffect, Hooks, Steepness};
 use crate::plant::Start;
 use crate::work::cycles_of;
@@ -89,6 +91,8 @@ pub struct Replay {
     start: [f64; 2],
     added: Option<Vec<f64>>,
     stored: Stored,
+    /// Cycles from one in which all loops of the control ran to the log's first sample.
+    ticked: u32,
 }
 
 impl Replay {
@@ -101,7 +105,20 @@ impl Replay {
     /// # Errors
     /// [`ReplayError::Log`] if a channel is missing; [`ReplayError::Period`].
     pub fn new(log: &Log, period: f64) -> Result<Self, ReplayError> {
-        let position = position_in(log)?;
+        Self::beginning(log, period, position_in(log)?)
+    }
+
+    /// The same for logs of this axis: without a sensor at the load, the motor's angle will do in place of the
+    /// load's position ([`position_shown`]).
+    ///
+    /// # Errors
+    /// As [`Replay::new`].
+    pub fn of_axis(log: &Log, period: f64, axis: &Axis) -> Result<Self, ReplayError> {
+        Self::beginning(log, period, &position_shown(log, axis)?)
+    }
+
+    /// Of a log that shows these positions of the load.
+    fn beginning(log: &Log, period: f64, position: &[f64]) -> Result<Self, ReplayError> {
         let few = position.len().min(6) - 1;
         let speed = (position[few] - position[0]) / (few.max(1) as f64 * period);
         Ok(Self {
@@ -110,6 +127,7 @@ impl Replay {
             start: [position[0], speed],
             added: excitation_in(log).map(<[f64]>::to_vec),
             stored: Stored::Nothing,
+            ticked: 0,
         })
     }
 
@@ -118,6 +136,21 @@ impl Replay {
     #[must_use]
     pub fn storing(self, stored: Stored) -> Self {
         Self { stored, ..self }
+    }
+
+    /// The same where all loops of the control ran so many of its cycles before the log's first sample: of a controller with
+    /// slower loops, which no log shows ([`Control::ticks`](crate::control::Control::ticks)).
+    #[must_use]
+    pub fn ticked(self, cycles: u32) -> Self {
+        Self {
+            ticked: cycles,
+            ..self
+        }
+    }
+
+    /// Cycles from one in which all loops of the control ran to the log's first sample.
+    pub fn ticks(&self) -> u32 {
+        self.ticked
     }
 
     /// What is stored at its start.
@@ -185,6 +218,7 @@ impl Replay {
         let mut positions = sampled(&late, None, closed_loop.clock_offset());
         let mut others = sampled(&timely, Some(speed), 0.0);
         let mut state = closed_loop.start(&self.begin(closed_loop)?)?;
+        closed_loop.begin_after(&mut state, self.ticked);
         let mut added = Added {
             replay: self,
             period,
@@ -250,7 +284,10 @@ impl Replay {
             Probe::Load(samples) => {
                 hooks.load(Steepness::default(), move |t| value(&samples, t.time)[0]);
             }
-            Probe::Offset(samples) => hooks.offset(move |s| value(&samples, s.time)),
+            Probe::Offset(samples) => hooks.offset(move |s| {
+                let [offset, rate] = value(&samples, s.time);
+                [offset, rate, 0.0]
+            }),
         }
     }
 }

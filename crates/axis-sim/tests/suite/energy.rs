@@ -10,7 +10,7 @@ use trajectories::{Limits, Motion, SCurve};
 use crate::change;
 
 /// Mechanisms; `DAMPING` stands for the stiffness damping.
-const MECHANISMS: [&str; 7] = [
+const MECHANISMS: [&str; 8] = [
     r#"kind = "rack"
 motor_inertia_kg_m2 = 0.0035
 gearbox_inertia_kg_m2 = 6e-4
@@ -61,6 +61,15 @@ screw_coupling_n_m_per_rad = 2800
 nut_stiffness_n_per_m = 7.45e7
 table_mass_kg = 515
 DAMPING"#,
+    // The load moves by 0.7 to 1.3 times the mean travel per radian.
+    r#"kind = "gear"
+motor_inertia_kg_m2 = 1e-4
+ratio = 100
+gear_stiffness_n_m_per_rad = 2.5e4
+load_inertia_kg_m2 = 2
+kinematic_error_rad = 1.5e-3
+kinematic_error_order = 2
+DAMPING"#,
     r#"kind = "linear-motor"
 slide_mass_kg = 40"#,
     r#"kind = "torque-motor"
@@ -68,7 +77,7 @@ table_inertia_kg_m2 = 1.2"#,
 ];
 
 /// Of how many of them motor and load are two.
-const ELASTIC: usize = 5;
+const ELASTIC: usize = 6;
 
 #[derive(Clone, Debug)]
 struct Drawn {

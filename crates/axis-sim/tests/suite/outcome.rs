@@ -283,9 +283,9 @@ fn nothing(_: &[f64], to: &mut Changes<'_>) -> Result<(), SetupError> {
 fn nowhere(_: &[f64], to: &mut Changes<'_>) -> Result<(), SetupError> {
     to.offset(|screw| {
         if screw.time > 0.10005 {
-            [f64::INFINITY, 0.0]
+            [f64::INFINITY, 0.0, 0.0]
         } else {
-            [0.0; 2]
+            [0.0; 3]
         }
     });
     Ok(())

@@ -99,6 +99,11 @@ impl Plain<'_> {
         }
     }
 
+    /// By how much more the load moves per radian at an angle of the motor.
+    fn growth(&self, angle: f64) -> f64 {
+        (self.error)(angle, 1.0)[1]
+    }
+
     fn rates(&self, offset: f64, command: f64, s: &State) -> State {
         let [y, v, angle, speed, z, torque] = *s;
         let [rub, slip] = self.friction.at(z, v);
@@ -113,7 +118,9 @@ impl Plain<'_> {
                 let stretch = r * angle - y + by - offset;
                 let stretch_rate = r * speed - v + rate;
                 let force = k * (stretch + damping * stretch_rate);
-                ((force - against) / mass, (torque - r * force) / motor)
+                // The transmission takes no power: what moves the load by dx/dθ pushes back by it.
+                let lever = r + self.growth(angle);
+                ((force - against) / mass, (torque - lever * force) / motor)
             }
         };
         let follow = TAU * self.source.bandwidth * (command - torque);
@@ -131,7 +138,7 @@ impl Plain<'_> {
             Masses::One(_) => 0.0,
         };
         let angle = (start + wound) / r;
-        let torque = r * load;
+        let torque = (r + self.growth(angle)) * load;
         let mut s: State = [start, 0.0, angle, 0.0, 0.0, torque];
         let offset = (self.error)(angle, 0.0)[0];
         let mut late: VecDeque<f64> = VecDeque::from(vec![torque; 8]);

@@ -1,11 +1,11 @@
 //! The two balances along a record, and how they change with the parameters.
 //!
 //! ```text
-//! e₁ = T − (J − J_w) θ̈ − J_w a/r − r load(x) − r (m a + T_f/lever + F₀)    N·m
+//! e₁ = T − (J − J_w) θ̈ − J_w a/r − e'(θ) F − r load(x) − r (m a + T_f/lever + F₀)    N·m
 //! e₂ = θ − x/r − c − b sat(T_t) − C T_t                                    rad
 //! ```
 //!
-//! F₀ is a constant load, T_t = T − (J − J_w) θ̈ the torque through the transmission, c the
+//! F is the force of the transmission, e the error of its kinematics, F₀ a constant load, T_t = T − (J − J_w) θ̈ the torque through the transmission, c the
 //! angle between the two scales, b half the free travel.
 
 use std::vec::Vec;

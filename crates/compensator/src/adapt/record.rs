@@ -68,19 +68,23 @@ impl Record {
 
         let at_start = standing(model, &log[..cycles(AT_START) as usize]);
         let rest = rests(log, at_start).then_some(at_start);
-        let torque = torques(model, log);
+        let mut torque = torques(model, log);
         let besides = [0, 1].map(|at| -> Vec<f64> { besides.iter().map(|b| b[at]).collect() });
         let angle: Vec<f64> = log.iter().map(|s| s.motor_angle).collect();
         let elastic = model.along.most_compliance() > 0.0;
         let measured: Vec<f64> = log.iter().map(|s| s.position).collect();
         let sees_load = elastic && differs(&measured, &angle, model.travel);
-        let smooth = Smooth {
+        let mut smooth = Smooth {
             model,
             torques: balance.pad(&torque, rest),
             besides: besides.each_ref().map(|taken| balance.pad(taken, rest)),
             angles: balance.pad(&angle, rest),
             balance: &balance,
         };
+        if model.kinematics.amplitude != 0.0 {
+            torque = smooth.without_reaction(&torque, &measured, &angle);
+            smooth.torques = balance.pad(&torque, rest);
+        }
         let position = match elastic && !sees_load {
             true => smooth.load(&measured, &angle),
             false => measured,

@@ -53,6 +53,21 @@ impl Smooth<'_> {
         (0..measured.len()).map(load).collect()
     }
 
+    /// Torques less what the force of the transmission asks of the motor by an error of the kinematics, e'(θ) F, at the
+    /// measured positions and angles. F changes less over the motor's turn than e' does: it is the smoothed one.
+    pub fn without_reaction(&self, torques: &[f64], measured: &[f64], angle: &[f64]) -> Vec<f64> {
+        let m = self.model;
+        let left = |k: usize| {
+            let section = m.along.at(measured[k]);
+            let inertia = section.rotating - section.lagging;
+            let transmitted = self.balance.of(0, &self.torques, k)
+                - self.taken(0, k)
+                - inertia * self.balance.of(2, &self.angles, k);
+            torques[k] - m.kinematics.growth(angle[k]) * transmitted / m.travel
+        };
+        (0..torques.len()).map(left).collect()
+    }
+
     /// The balance at a sample.
     pub fn point(&self, sample: usize, positions: &[f64], elastic: bool) -> Point {
         let (m, of) = (self.model, |which, of: &[f64]| {

@@ -8,7 +8,7 @@
 //! s   = Gauss * (C T_t + b(T_t)/r)               T_t = r (m a + F) + J_w a/r
 //! l   = −(e(θ) − e(θ₀))/r                        what an error of the kinematics asks for
 //! ω_d = v/r + ṡ + l̇
-//! T_d = J a/r + r (m a + F) + (J − J_w) s̈ + J l̈
+//! T_d = J a/r + (r + e'(θ)) (m a + F) + (J − J_w) s̈ + J l̈
 //! u   = the command with which the actuator's model has T_d a cycle later
 //! ```
 //!
@@ -49,7 +49,7 @@ struct Ahead<T> {
     shift: Reference<T>,
     friction: T,
     sticking: T,
-    /// J a/r + r (m a + F), N·m.
+    /// J a/r + (r + e') (m a + F), N·m.
     rigid: T,
     /// J − J_w, kg·m².
     inertia: T,
@@ -73,8 +73,8 @@ struct Resting<T> {
     bristle: T,
     /// On the load, N or N·m.
     friction: T,
-    /// Through the transmission, N·m at the motor.
-    rigid: T,
+    /// What the motor gives against it, N·m.
+    torque: T,
     wind_up: T,
 }
 
@@ -240,10 +240,11 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
     /// that differs from the axis' own load, friction holds the difference: bristles are
     /// taken as deflected so far.
     pub fn begin(&mut self, position: T, standstill: &Standstill<T>) {
-        let resting = self.resting(position, standstill.effort, standstill.held);
+        let angle = standstill.motor_angle;
+        let resting = self.resting(position, standstill.effort, standstill.held, angle);
         let Resting {
             friction,
-            rigid,
+            torque,
             wind_up,
             ..
         } = resting;
@@ -259,7 +260,7 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
             shift: Reference::default(),
             friction,
             sticking: T::ONE,
-            rigid,
+            rigid: torque,
             inertia: section.rotating - section.lagging,
             rotating: section.rotating,
             lead: T::ZERO,
@@ -269,12 +270,16 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
             ahead,
             wind_up,
             motor_speed: T::ZERO,
-            torque: rigid,
+            torque,
         }; WOUND];
         self.smoothing.settle(wind_up);
-        self.inverse.settle(rigid);
+        self.inverse.settle(torque);
         self.home = match &standstill.homed {
-            Some(homed) => self.resting(homed.position, homed.effort, None).wind_up,
+            Some(homed) => {
+                let there = angle + (homed.position - position) / m.travel;
+                self.resting(homed.position, homed.effort, None, there)
+                    .wind_up
+            }
             None => wind_up,
         };
         let m = &self.model;
@@ -284,12 +289,13 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
         (self.ahead_at, self.wound_at, self.pushed) = (0, 0, 0);
     }
 
-    /// The axis at rest at a position, the drive holding a command: bristles hold what the
-    /// command has beside the load, or `held` where that is known.
-    fn resting(&self, position: T, effort: T, held: Option<T>) -> Resting<T> {
+    /// The axis at rest at a position and an angle of the motor, the drive holding a command: bristles hold
+    /// what the command has beside the load, or `held` where that is known.
+    fn resting(&self, position: T, effort: T, held: Option<T>, angle: T) -> Resting<T> {
         let m = &self.model;
         let section = m.along.at(position);
-        let beside = m.torque_constant() * effort / m.travel - section.load;
+        let lever = m.travel + m.kinematics.growth(angle);
+        let beside = m.torque_constant() * effort / lever - section.load;
         let holding = held.unwrap_or(beside);
         let p = m.friction.parameters();
         let most = m.friction.bristle_limit();
@@ -299,11 +305,12 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
             T::ZERO
         };
         let friction = m.friction.torque(bristle, T::ZERO) / m.lever;
-        let rigid = m.travel * (friction + section.load);
+        let force = friction + section.load;
+        let rigid = m.travel * force;
         Resting {
             bristle,
             friction,
-            rigid,
+            torque: lever * force,
             wind_up: section.compliance * rigid + self.side(rigid),
         }
     }
@@ -385,15 +392,19 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
         let rigid = m.travel * force;
         let transmitted = rigid + section.lagging * at_motor;
         let wind_up = section.compliance * transmitted + self.side(transmitted);
+        let position = r.position + target.shift.position;
+        let lead = self.lead(position, wind_up);
+        let angle = self.zero_angle + position / m.travel + wind_up + lead;
+        let reaction = m.kinematics.growth(angle) * force;
         let ahead = Ahead {
             reference: *r,
             shift: target.shift,
             friction,
             sticking: self.sticking(),
-            rigid: section.rotating * at_motor + rigid + at_angle,
+            rigid: section.rotating * at_motor + rigid + reaction + at_angle,
             inertia: section.rotating - section.lagging,
             rotating: section.rotating,
-            lead: self.lead(r.position + target.shift.position, wind_up),
+            lead,
         };
         (ahead, wind_up)
     }

@@ -1,6 +1,6 @@
 //! By how much two simulations of one machine may differ.
 
-use axis_sim::{Axis, position_in, reference_in};
+use axis_sim::{Axis, position_shown, reference_in};
 
 use super::set::{ANGLE, LogSet, Prepared, Rest};
 
@@ -47,14 +47,17 @@ pub(super) fn inexactness(
 fn dynamics(machine: &Axis, log: &Prepared, channels: &[&str], channel: usize) -> Vec<f64> {
     let name = channels[channel];
     let of_way = [machine.position_channel(), ANGLE].contains(&name);
-    let way = || Some((reference_in(&log.log).ok()?, position_in(&log.log).ok()?));
+    let way = || {
+        let position = position_shown(&log.log, machine).ok()?;
+        Some((reference_in(&log.log).ok()?, position))
+    };
     if let Some((reference, position)) = way().filter(|_| of_way) {
         let lever = if name == ANGLE {
             machine.travel_per_radian()
         } else {
             1.0
         };
-        let pairs = reference.iter().zip(position);
+        let pairs = reference.iter().zip(&*position);
         return pairs.map(|(r, p)| (r - p) / lever).collect();
     }
     let samples = &log.measured[channel];

@@ -9,10 +9,12 @@ mod share;
 mod slack;
 mod state;
 mod stored;
+mod ticks;
 
 use axis_sim::effects::ActiveEffect;
 use axis_sim::{Axis, Balance, Probe, Replay, ReplayError, Trace};
 
+pub(crate) use self::set::ANGLE;
 pub use self::set::{LogSet, Prepared, Rest};
 pub use self::state::State;
 pub(crate) use self::state::is_form_of;

@@ -21,6 +21,7 @@ impl LogSet {
     /// [`ReplayError::Log`] if a channel that must be there is missing.
     pub fn new(logs: Vec<(String, Log, f64)>, machine: &Axis) -> Result<Self, ReplayError> {
         let mut set = Self::prepared(logs, machine)?;
+        set.find_ticks(machine, &State::initial(machine))?;
         set.correct_defects(machine, &State::initial(machine))?;
         Ok(set)
     }
@@ -43,7 +44,10 @@ impl LogSet {
         let as_filed = ClosedLoop::new(machine)?;
         let prepare = |(name, log, period): (String, Log, f64)| {
             let channel = |name: &&str| Ok(relative(name, log.channel(name)?));
-            let (replay, doubtful) = storing(Replay::new(&log, period)?, &log, period, &as_filed);
+            let (replay, doubtful) = {
+                let replay = Replay::of_axis(&log, period, machine)?;
+                storing(replay, &log, period, &as_filed)
+            };
             Ok(Prepared {
                 taken_up: taken_up(&log, machine),
                 doubtful,
@@ -151,6 +155,7 @@ impl LogSet {
         }
         let mut set = Self::prepared(logs, machine)?;
         if set.channels == self.channels {
+            set = set.ticked(|l| self.logs[l].answer.replay().map(Replay::ticks));
             for (log, before) in set.logs.iter_mut().zip(&self.logs) {
                 log.defect.clone_from(&before.defect);
             }

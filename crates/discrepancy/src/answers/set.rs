@@ -63,7 +63,7 @@ pub struct LogSet {
 }
 
 /// The motor's angle.
-pub(super) const ANGLE: &str = "motor_angle_rad";
+pub(crate) const ANGLE: &str = "motor_angle_rad";
 
 /// Whether a channel counts from wherever an encoder was.
 fn has_no_zero(channel: &str) -> bool {

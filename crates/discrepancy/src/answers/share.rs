@@ -39,6 +39,7 @@ impl LogSet {
     /// # Errors
     /// [`ReplayError`] if the machine does not run at this state.
     pub(crate) fn follow(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
+        self.find_ticks(machine, state)?;
         self.find_stored(machine, state)?;
         self.find_beginning(machine, state)?;
         self.find_effort(machine, state)?;
@@ -283,7 +284,7 @@ fn effort_moved(log: &Prepared) -> Option<f64> {
 
 /// Minus twice the log-likelihood of channels with white residuals of unknown variance, but for
 /// a constant.
-fn misfit(log: &[Vec<f64>]) -> f64 {
+pub(super) fn misfit(log: &[Vec<f64>]) -> f64 {
     let channel = |rest: &Vec<f64>| {
         let n = rest.len().max(1) as f64;
         let square = rest.iter().map(|r| r * r).sum::<f64>() / n;

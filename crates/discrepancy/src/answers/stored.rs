@@ -13,7 +13,7 @@
 
 use axis_log::Log;
 use axis_sim::{
-    Axis, ChannelPart, ClosedLoop, Replay, Stored, channels, position_in, reference_in,
+    Axis, ChannelPart, ClosedLoop, Replay, Stored, channels, position_shown, reference_in,
 };
 use trajectories::Motion;
 
@@ -67,7 +67,7 @@ pub(super) fn storing(
             let position = replay.reference().at(0.0).position;
             by_command(command, few, MEMORY / period, closed_loop, position)
         }
-        None => (by_position(log, rest, few), true),
+        None => (by_position(log, closed_loop.axis(), rest, few), true),
     };
     tracing::debug!(?stored, tells, rest, "start of a log");
     let doubtful = match stored {
@@ -187,8 +187,8 @@ fn by_command(
 
 /// Where no command is logged: a standstill in which nothing happens has something stored, and
 /// what the bristles hold is to be found.
-fn by_position(log: &Log, rest: usize, few: usize) -> Stored {
-    let Ok(position) = position_in(log) else {
+fn by_position(log: &Log, axis: &Axis, rest: usize, few: usize) -> Stored {
+    let Ok(position) = position_shown(log, axis) else {
         return Stored::Nothing;
     };
     // Loads that come up move the load before the loop answers, within a few periods of it.

@@ -187,7 +187,7 @@ fn instruments(
     let mut axis = machine.clone();
     axis.control = law.control(at).ok()?;
     let one = |log: &(String, Log, f64)| {
-        let trace = Replay::new(&log.1, log.2).ok()?;
+        let trace = Replay::of_axis(&log.1, log.2, machine).ok()?;
         let trace = trace.run(&axis, &[], None).ok()?;
         Seen::simulated(machine, log, &trace)
     };

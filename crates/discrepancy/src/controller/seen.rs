@@ -2,7 +2,9 @@
 
 use axis_log::Log;
 use axis_sim::actuator::Effort;
-use axis_sim::{Axis, LoggedReference, Measured, SampledCurve, Trace, excitation_in, position_in};
+use axis_sim::{
+    Axis, LoggedReference, Measured, SampledCurve, Trace, excitation_in, position_shown,
+};
 use trajectories::{Motion, Setpoint};
 
 use super::error::ControllerError;
@@ -65,12 +67,13 @@ impl Seen {
                 channel,
             });
         };
+        let position = position_shown(log, axis).map_err(missed)?;
         let mut seen = Self::sampled(
             axis,
             &Sampled {
                 log,
                 period: *period,
-                position: position_in(log).map_err(missed)?,
+                position: &position,
                 command,
                 angle: log.channel(ANGLE).ok(),
                 speed: log.channel("motor_speed_rad_s").ok(),

@@ -1,14 +1,14 @@
 //! What an effect costs on the motion of the check logs: tracking error, force, current.
 
 use axis_sim::effects::Measure;
-use axis_sim::{Axis, ReplayError, reference_in};
+use axis_sim::{Axis, ReplayError, needed_position, position_shown, reference_in};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::units::channel_unit;
 use crate::answers::Rest;
 use crate::answers::effort::efforts;
-use crate::answers::{LogSet, Prepared, State};
+use crate::answers::{ANGLE, LogSet, Prepared, State};
 
 /// Root mean square and greatest size of a signal, in its SI unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -114,17 +114,22 @@ pub(super) fn whole_cost(
 }
 
 fn tracking(machine: &Axis, set: &LogSet, without: &Rest, with: &Rest) -> Option<TrackingCost> {
-    let name = machine.position_channel();
-    let at = set.channels.iter().position(|channel| *channel == name)?;
+    let place = |name: &str| set.channels.iter().position(|channel| *channel == name);
+    // Without a sensor at the load the motor's angle shows where that is.
+    let own = place(machine.position_channel()).map(|at| (at, 1.0));
+    let motor = || place(ANGLE).filter(|_| needed_position(machine).is_none());
+    let (at, lever) = own.or_else(|| Some((motor()?, machine.travel_per_radian())))?;
+    let name = set.channels[at];
     // The model's position is the measured one less the residual.
     let errors = |rest: Option<&Rest>| -> Option<Vec<f64>> {
         let mut all = Vec::new();
         for (l, log) in set.logs.iter().enumerate() {
             let reference = reference_in(&log.log).ok()?;
+            let position = position_shown(&log.log, machine).ok()?;
             let shown = shown(log, &[name, machine.reference_channel()]);
             let error = |k: usize| {
-                let left = rest.map_or(0.0, |rest| rest[l][at][k]);
-                reference[k] - log.measured[at][k] + left
+                let left = rest.map_or(0.0, |rest| lever * rest[l][at][k]);
+                reference[k] - position[k] + left
             };
             all.extend((0..log.measured[at].len()).filter(|&k| shown[k]).map(error));
         }

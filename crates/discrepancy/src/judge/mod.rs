@@ -112,7 +112,7 @@ pub fn judged(
     let Compared {
         set, traces, after, ..
     } = &compared;
-    let recalibrated = recalibrated(machine, full);
+    let recalibrated = recalibrated(machine, found);
     let refused = remainder.refused.map(refused_effects);
     let each = std::mem::take(&mut named.each);
     let assessment = Assessment {

@@ -45,6 +45,7 @@ fn notes(machine: &Axis, found: &Found) -> Result<Vec<String>, ReplayError> {
     notes.extend(balance_notes(machine, found)?);
     notes.extend(slack_notes(machine, found));
     notes.extend(sets(found).flat_map(jitter_notes));
+    notes.extend(sets(found).flat_map(|set| set.notes_of_ticks(machine)));
     Ok(notes)
 }
 

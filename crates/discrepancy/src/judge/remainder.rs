@@ -53,6 +53,12 @@ impl<'a> Remainder<'a> {
         let gap = compared.left.gap.clone();
         let largest = found.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
         let is_nearly_none = gap.reduction >= NEARLY_ALL && !is_bare;
+        // That nothing is missing has to hold of every log, of those that were fitted as well: there is no more noise
+        // in them than the check logs show, but for what differs from log to log. Where there is, nothing is taken for noise.
+        let more_than_noise = compared
+            .fit_above
+            .filter(|(_, times)| is_more_than_noise(*times, compared.above))
+            .filter(|_| is_bare && named.own_form.is_none());
         let lack = lack(machine, found, MATERIAL * largest)?;
         // Beside effects that leave next to nothing, a residual without a curve is small change.
         let excess = match lack.is_some() || is_nearly_none {
@@ -62,25 +68,19 @@ impl<'a> Remainder<'a> {
         let following = excess
             .as_ref()
             .and_then(|excess| following(compared, excess, is_bare));
-        let coloured = excess.filter(|_| following.is_none());
+        let coloured = excess.filter(|_| following.is_none() && more_than_noise.is_none());
         // Of a balance nobody knows what the controller makes of its sensors' noise: slow, it is above
         // the floor, and what curves take of it does not hold on other logs.
         let without = match is_bare {
             true => sizes(set, &compared.after),
             false => sizes(set, &of_base),
         };
-        let as_noise = gap.taken_for_noise(&without).filter(|_| lack.is_none());
+        let as_noise = as_noise(&gap, &without, lack.is_some() || more_than_noise.is_some());
         let is_slow_of_loop = as_noise.is_some() && !gap.is_at_floor();
         let gap = as_noise.unwrap_or(gap);
         let unknown = lack.or_else(|| following.map(in_frequency));
         let as_coloured = compared.left.loop_noise.is_some() && unknown.is_none();
         let is_noise = gap.is_at_floor() || coloured.is_some() || is_slow_of_loop || as_coloured;
-        // That nothing is missing has to hold of every log, of those that were fitted as well: there is no more noise
-        // in them than the check logs show, but for what differs from log to log.
-        let more_than_noise = compared
-            .fit_above
-            .filter(|(_, times)| is_more_than_noise(*times, compared.above))
-            .filter(|_| is_bare && named.own_form.is_none());
         let is_significant =
             !(is_noise || is_nearly_none) || unknown.is_some() || more_than_noise.is_some();
         // What takes away little of a residual that is noise was fitted to noise.
@@ -115,6 +115,12 @@ impl<'a> Remainder<'a> {
             (false, _) => Verdict::PartlyExplained,
         }
     }
+}
+
+/// The gap, were its residual taken for noise although that is above its floor: not where something else is known of
+/// it (`is_more`), a law that it follows or a log in which there is more than in others. One residual is not both.
+fn as_noise(gap: &Gap, without: &[f64], is_more: bool) -> Option<Gap> {
+    gap.taken_for_noise(without).filter(|_| !is_more)
 }
 
 /// The bands in which the residual is more than the noise, if that is known.
@@ -155,4 +161,29 @@ fn following(compared: &Compared<'_>, excess: &Excess, is_bare: bool) -> Option<
     let comes_with_motion = |band| is_steady.as_ref().is_some_and(|steady| !steady(band));
     let stays = stays([fitted, checked]);
     excess.only(|band| rest.follows(band) || comes_with_motion(band) || stays && band[0] == 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::as_noise;
+    use crate::name::gap::{ChannelGap, Gap};
+
+    /// A clean axis of which one fitted log was 3.4 times above its noise: it was said in one report that this
+    /// rules out "nothing is missing", and that the residual is noise.
+    #[test]
+    fn a_residual_that_is_more_than_noise_in_one_log_is_not_taken_for_noise() {
+        let gap = Gap {
+            channels: vec![ChannelGap {
+                channel: "force_ref_n".to_owned(),
+                before: 1.3,
+                after: 1.3,
+                floor: 1.0,
+                floor_most: 1.0,
+                floor_is_least: true,
+            }],
+            reduction: 0.0,
+        };
+        assert!(as_noise(&gap, &[1.3], false).is_some());
+        assert!(as_noise(&gap, &[1.3], true).is_none());
+    }
 }

@@ -2,7 +2,7 @@
 
 use axis_log::Log;
 use axis_log::quality::CrossCheckVerdict;
-use axis_sim::Axis;
+use axis_sim::{Axis, needed_position};
 
 use super::apart::NamedLog;
 use super::checks::check_log;
@@ -14,7 +14,13 @@ use super::start::from_rest;
 /// balance, which says itself what it needs.
 pub fn needed_channels(machine: &Axis) -> Vec<&'static str> {
     match machine.has_control() {
-        true => vec![machine.reference_channel(), machine.position_channel()],
+        true => {
+            let position = needed_position(machine).into_iter();
+            [machine.reference_channel()]
+                .into_iter()
+                .chain(position)
+                .collect()
+        }
         false => Vec::new(),
     }
 }

@@ -3,7 +3,7 @@
 use axis_log::Log;
 use axis_log::intake::SHORT_GAP;
 use axis_log::quality::{check_sampling, constant_channels, unit_slip};
-use axis_sim::{Axis, Balance, ReplayError, position_in, reference_in};
+use axis_sim::{Axis, Balance, ReplayError, needed_position, position_shown, reference_in};
 
 use super::error::LogSetError;
 use super::relations::agree;
@@ -37,10 +37,18 @@ pub fn check_log(file: &str, log: &Log, machine: &Axis) -> Result<f64, LogSetErr
     if !machine.has_control() {
         return check_balanced(file(), log, sampling.period, machine);
     }
-    let (Ok(reference), Ok(position)) = (reference_in(log), position_in(log)) else {
-        return Ok(sampling.period);
+    let (reference, position) = match (reference_in(log), position_shown(log, machine)) {
+        (Ok(reference), Ok(position)) => (reference, position),
+        (_, Err(_)) if needed_position(machine).is_none() => {
+            let channel = machine.position_channel();
+            return Err(LogSetError::NoPosition {
+                file: file(),
+                channel,
+            });
+        }
+        _ => return Ok(sampling.period),
     };
-    if let Some(slip) = unit_slip(reference, position) {
+    if let Some(slip) = unit_slip(reference, &position) {
         return Err(LogSetError::Unit {
             file: file(),
             factor: slip.factor,
@@ -61,7 +69,7 @@ pub fn check_log(file: &str, log: &Log, machine: &Axis) -> Result<f64, LogSetErr
     no_holes(&file(), log)?;
     agree(&file(), log, machine)?;
     on_stroke(&file(), log, machine)?;
-    follows(&file(), log, machine, reference, position)?;
+    follows(&file(), log, machine, reference, &position)?;
     moves_both_ways(&file(), reference)?;
     Ok(sampling.period)
 }
@@ -157,12 +165,12 @@ fn check_balanced(
 
 fn on_stroke(file: &str, log: &Log, machine: &Axis) -> Result<(), LogSetError> {
     let stroke = &machine.stroke;
+    let position = position_shown(log, machine).unwrap_or_default();
     let channels: [(&'static str, _); 2] = [
-        ("reference", reference_in(log)),
-        ("position", position_in(log)),
+        ("reference", reference_in(log).unwrap_or_default()),
+        ("position", &position),
     ];
     for (channel, samples) in channels {
-        let samples = samples.unwrap_or_default();
         let outside = |x: &f64| !(stroke.minimum - 1e-6..=stroke.maximum + 1e-6).contains(x);
         if let Some(k) = samples.iter().position(outside) {
             return Err(LogSetError::OffStroke {

@@ -51,6 +51,16 @@ pub enum LogSetError {
         /// What would correct it.
         scale: f64,
     },
+    /// Nothing shows where the load of an axis is that has no sensor there.
+    #[error(
+        "{file}: neither \"motor_angle_rad\" nor \"{channel}\": the axis has no sensor at the load, so that one of them must show its motion; map a column to one of them in a [[log.column]]"
+    )]
+    NoPosition {
+        /// The log.
+        file: String,
+        /// The channel of the load's position on this axis.
+        channel: &'static str,
+    },
     /// Samples too far apart for a replay.
     #[error(
         "{file}: {rate:.4} Hz: a replay of a controller needs {least} Hz at least, as slower samples do not show the reference that the controller followed; record faster, or, if the log has a torque, force or current, leave [control] out of the axis file (or use --balance)"

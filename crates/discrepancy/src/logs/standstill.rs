@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use axis_log::{Log, LogError};
-use axis_sim::{Axis, position_in, reference_in};
+use axis_sim::{Axis, position_shown, reference_in};
 
 /// Reference speed below which a log stands still, m/s or rad/s.
 pub(super) const AT_REST: f64 = 1e-3;
@@ -44,7 +44,8 @@ impl Standstill {
             .collect();
         let lever = machine.travel_per_radian();
         let motor = log.channel(MOTOR).ok().map(|angle| (angle, lever));
-        let measured = [(position_in(log)?, 1.0)].into_iter().chain(motor);
+        let position = position_shown(log, machine)?;
+        let measured = [(&*position, 1.0)].into_iter().chain(motor);
         let mut all = Vec::new();
         for (samples, lever) in measured {
             let pairs = reference.iter().zip(samples);

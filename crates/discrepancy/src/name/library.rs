@@ -1,7 +1,7 @@
 //! What each effect of the library does on a set of logs.
 
 use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, EffectParameter, Nature, Scales};
-use axis_sim::{Axis, ReplayError, position_in};
+use axis_sim::{Axis, ReplayError, position_shown};
 use rayon::prelude::*;
 
 use crate::answers::{LogSet, Prepared, State};
@@ -127,8 +127,11 @@ fn shapes(fitter: &Fitter<'_>, effect: &Effect) -> Vec<Vec<f64>> {
     let duration = |l: &Prepared| l.log.len() as f64 * l.period;
     let end = fitter.set.logs.iter().map(duration).fold(0.0, f64::max);
     let logs = fitter.set.logs.iter();
-    let positions = logs.flat_map(|l| position_in(&l.log).unwrap_or(&[]));
-    let (low, high) = positions.fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
+    let positions = logs.map(|l| position_shown(&l.log, fitter.machine).unwrap_or_default());
+    let (low, high) = positions.fold((f64::MAX, f64::MIN), |ends, positions| {
+        let wider = |(a, b): (f64, f64), &x: &f64| (a.min(x), b.max(x));
+        positions.iter().fold(ends, wider)
+    });
     let scales = Scales::of(fitter.machine);
     let slot = end / SLOTS as f64;
     let mut all = vec![effect.typical(&scales)];

@@ -139,7 +139,7 @@ impl ToEffort {
         Ok(Self {
             motor: estimate(effort, motor, is_angle)?,
             is_angle,
-            load: estimate(effort, recorded.load, true)?,
+            load: estimate(effort, &recorded.load, true)?,
             effort: estimate(recorded.command, effort, false)?,
         })
     }

@@ -228,7 +228,7 @@ impl MeasuredDrive {
         };
         let angle = estimate(recorded.angle, true)?;
         let speed = estimate(recorded.speed, false)?;
-        let all: Vec<Record<'_>> = recorded.records(recorded.load, true).collect();
+        let all: Vec<Record<'_>> = recorded.records(&recorded.load, true).collect();
         let load = FrequencyResponse::of_all(&all, by, averaging)?;
         let at = model_at::ModelAt::new(axis, recorded.position)?;
         let plant = MeasuredPlant::new(

@@ -1,8 +1,10 @@
 //! What a log shows of an excited axis: channels, and when it was excited.
 
+use std::borrow::Cow;
+
 use axis_log::Log;
 use axis_sim::actuator::Effort;
-use axis_sim::{Axis, excitation_in, position_in};
+use axis_sim::{Axis, excitation_in, position_shown};
 use frequency_response::{Averaging, Record, period_of};
 
 use super::MeasureSettings;
@@ -31,7 +33,7 @@ pub(crate) struct Recorded<'a> {
     pub effort: Option<&'a [f64]>,
     pub angle: Option<&'a [f64]>,
     pub speed: Option<&'a [f64]>,
-    pub load: &'a [f64],
+    pub load: Cow<'a, [f64]>,
     /// Of d and q, V.
     pub voltages: Option<[&'a [f64]; 2]>,
     /// From which to which sample.
@@ -88,7 +90,7 @@ impl<'a> Recorded<'a> {
             .unwrap_or(names[0]);
         let missing = |error: axis_log::LogError| LoopError::Log(error.to_string());
         let command = log.channel(name).map_err(missing)?;
-        let load = position_in(log).map_err(missing)?;
+        let load = position_shown(log, axis).map_err(missing)?;
         let angle = log.channel("motor_angle_rad").ok();
         // A speed loop that is slower than the control holds its speed over cycles, which the law of the
         // loop counts by itself: the angle shows the motor then.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use axis_log::intake::Options as Intake;
 use axis_log::{PlusMinus, never_zero};
-use axis_sim::{Axis, SixDigits, known_channels};
+use axis_sim::{Axis, SixDigits, known_channels, needed_position};
 use clap::Args;
 use drive_loop::{MeasureSettings, MeasuredDrive, WithDeviation};
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -94,7 +94,8 @@ pub fn measured(
             exact: &exact,
             ..Intake::default()
         };
-        let log = read_with(path, axis, &[axis.position_channel()], options, &mut notes)?;
+        let needed: Vec<&str> = needed_position(axis).into_iter().collect();
+        let log = read_with(path, axis, &needed, options, &mut notes)?;
         MeasuredDrive::of(axis, &log, settings)
             .into_diagnostic()
             .wrap_err_with(|| path.display().to_string())

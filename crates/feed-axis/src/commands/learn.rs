@@ -6,7 +6,7 @@ use axis_log::read_log;
 use axis_pipeline::ErrorUnit;
 use axis_pipeline::learning::StoredCorrection;
 use axis_pipeline::measured::Errors;
-use axis_sim::{Axis, SixDigits};
+use axis_sim::{Axis, SixDigits, needed_position};
 use clap::Args;
 use compensator::{Advice, LearnedMove, Round};
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -35,7 +35,11 @@ pub struct Options {
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
     let axis = read_axis(&options.axis)?;
-    let required = [axis.reference_channel(), axis.position_channel()];
+    let position = needed_position(&axis).into_iter();
+    let required: Vec<&str> = [axis.reference_channel()]
+        .into_iter()
+        .chain(position)
+        .collect();
     let log = read_log(&options.log, &axis.log, &required).into_diagnostic()?;
     let of_log = || format!("in {}", options.log.display());
     let mut correction = match options.correction.exists() {

@@ -17,8 +17,9 @@ use crate::DriveError;
 /// ```
 ///
 /// Where a flank arrives at the speed δ̇ this jumps by βk δ̇; just there the
-/// force may have any value between. The reaction on the rotation keeps the
-/// lever r: a lead error of 1e-4 changes it by as little.
+/// force may have any value between. The reaction F on the rotation keeps the
+/// lever r. An offset that changes with the rotation θ reacts on it by the torque
+/// −F ∂offset/∂θ besides (power is the same on both sides), which the caller adds to that of the motor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NutErrors {
     offset: f64,

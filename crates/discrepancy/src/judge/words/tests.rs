@@ -103,6 +103,7 @@ fn known(share: f64) -> Recalibrated {
         share,
         tolerance: 0.1,
         is_angle: false,
+        by_logs: None,
     }
 }
 
@@ -181,6 +182,21 @@ fn a_parameter_without_tolerance_has_no_edge() {
     assert!(known(-0.1).is_at_edge() && !known(0.09).is_at_edge());
 }
 
+/// A motor's inertia that is 13 % off was taken up by a parameter at 9.76 % of 10 %, without a word.
+#[test]
+fn a_parameter_whose_own_interval_reaches_beyond_its_tolerance_is_at_its_edge() {
+    let by_logs = |share: f64, own: [f64; 2]| Recalibrated {
+        by_logs: Some(own),
+        ..known(share)
+    };
+    assert!(by_logs(0.0976, [0.0978, 0.006]).is_at_edge());
+    assert!(by_logs(-0.09, [-0.13, 0.06]).is_at_edge());
+    assert!(!by_logs(0.0976, [0.0978, 0.001]).is_at_edge());
+    // Hardly known, an interval reaches beyond it from anywhere.
+    assert!(!by_logs(0.05, [0.06, 0.06]).is_at_edge());
+    assert!(!known(0.0976).is_at_edge());
+}
+
 #[test]
 fn an_angle_is_said_in_degrees_and_a_whole_turn_has_no_edge() {
     let angle = |share: f64, tolerance: f64| Recalibrated {
@@ -188,6 +204,7 @@ fn an_angle_is_said_in_degrees_and_a_whole_turn_has_no_edge() {
         share,
         tolerance,
         is_angle: true,
+        by_logs: None,
     };
     let edge = angle(-0.01, 0.01);
     assert!(edge.is_at_edge());

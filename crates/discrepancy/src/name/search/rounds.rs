@@ -40,7 +40,7 @@ impl Search<'_> {
         let screened = promises.one_by_one(&screenings[0]);
         let candidates = match awaited.is_empty() {
             true => self.worth_refining(&promises, &screenings, &screened, &own),
-            false => screened.iter().map(|s| vec![s.clone()]).collect(),
+            false => self.awaited_candidates(&promises, &screenings, &screened, &own),
         };
         let mut of_all = self.refine(candidates, &own);
         let refined = &mut of_all.kept;
@@ -75,6 +75,33 @@ impl Search<'_> {
         true
     }
 
+    /// Candidates for what is awaited, however little they promise: begun from every shape that a candidate
+    /// which nobody asked for is begun from.
+    fn awaited_candidates(
+        &self,
+        promises: &Promises<'_>,
+        screenings: &[Screening],
+        screened: &[Screened],
+        own: &Columns,
+    ) -> Vec<Vec<Screened>> {
+        let each = screened.iter().map(|s| vec![s.clone()]);
+        let of_most = promises.of_most(screenings);
+        let beside = self.begun_elsewhere(promises, own);
+        let beside = beside.into_iter().map(|one| vec![one]);
+        each.chain(of_most).chain(beside).collect()
+    }
+
+    /// Candidates with shapes that the library does not have, but these logs ask for: loads that repeat, and
+    /// bodies that swing.
+    fn begun_elsewhere(&self, promises: &Promises<'_>, own: &Columns) -> Vec<Screened> {
+        let all = [
+            self.waves(own),
+            self.turns(own),
+            self.resonances(own, promises.of_noise()),
+        ];
+        all.into_iter().flatten().collect()
+    }
+
     /// What is worth a simulation: single effects, pairs, forms of friction, loads that repeat and bodies that swing.
     fn worth_refining(
         &self,
@@ -91,13 +118,8 @@ impl Search<'_> {
             let with_memory = self.own_with_memory(screened).into_iter();
             worth.extend(with_memory.filter(|pair| promises.are_worth_it(pair, most)));
         }
-        let beside = [
-            self.forms(own),
-            self.waves(own),
-            self.turns(own),
-            self.resonances(own, promises.of_noise()),
-        ];
-        let beside = beside.into_iter().flatten();
+        let beside = self.forms(own).into_iter();
+        let beside = beside.chain(self.begun_elsewhere(promises, own));
         let beside = beside.filter(|s| s.gain >= WORTH * most);
         worth.extend(beside.map(|one| vec![one]));
         worth

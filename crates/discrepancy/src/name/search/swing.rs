@@ -22,8 +22,9 @@ impl Search<'_> {
     pub(super) fn resonances(&self, own: &Columns, noise: &[Spectral]) -> Vec<Screened> {
         let mut library = self.library.candidates.iter();
         let known = library.find_map(|c| Some((c, c.effect.place_of(is_frequency)?)));
+        let awaited = self.awaited();
         let known =
-            known.filter(|(c, _)| !self.fit_logs.is_balanced() && self.wanted(c.effect, &[]));
+            known.filter(|(c, _)| !self.fit_logs.is_balanced() && self.wanted(c.effect, &awaited));
         let Some((known, at)) = known else {
             return Vec::new();
         };

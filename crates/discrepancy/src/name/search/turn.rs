@@ -7,7 +7,7 @@
 use std::f64::consts::TAU;
 
 use axis_sim::effects::Nature;
-use axis_sim::position_in;
+use axis_sim::position_shown;
 use rayon::prelude::*;
 
 use super::lines::{Line, add, strongest};
@@ -32,7 +32,8 @@ impl Search<'_> {
     pub(super) fn turns(&self, own: &Columns) -> Vec<Screened> {
         let library = || self.library.candidates.iter();
         let of_turns = library().find_map(|c| Some((c, c.effect.place_of(is_turn_order)?)));
-        let of_turns = of_turns.filter(|(known, _)| self.wanted(known.effect, &[]));
+        let awaited = self.awaited();
+        let of_turns = of_turns.filter(|(known, _)| self.wanted(known.effect, &awaited));
         let Some((known, at)) = of_turns else {
             return Vec::new();
         };
@@ -61,7 +62,7 @@ impl Search<'_> {
         let per_turn = TAU * self.machine.travel_per_radian();
         let rest = set.rest(&self.fit.traces);
         let turns = |log| -> Vec<f64> {
-            let positions = position_in(log).unwrap_or_default();
+            let positions = position_shown(log, self.machine).unwrap_or_default();
             positions.iter().map(|x| x / per_turn).collect()
         };
         let logs: Vec<Vec<f64>> = set.logs.iter().map(|log| turns(&log.log)).collect();

@@ -50,7 +50,7 @@ impl Search<'_> {
         let Some(known) = library.clone().find(|c| c.effect.name == REPEATS) else {
             return Vec::new();
         };
-        if !self.wanted(known.effect, &[]) {
+        if !self.wanted(known.effect, &self.awaited()) {
             return Vec::new();
         }
         let [shortest, longest] = known.effect.parameters[PERIOD].bounds(&known.scales);
