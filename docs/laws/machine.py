@@ -162,9 +162,14 @@ def simulate(m, moves, hidden, onset, random):
         # A current is logged as it flows, anything else as it is commanded.
         xs[k], us[k] = motor if at_motor else x, acting if m["channel"] == "iq_a" else command
         if m["stiffness"]:
-            twist = motor - x + error * math.sin(2 * m["ratio"] * motor) if error else motor - x
-            spring = m["stiffness"] * twist + m["damping"] * (motor_v - v)
-            motor_v += (acting - spring - cogging) / m["motor_mass"] * STEP
+            twist, lever = motor - x, 1.0
+            if error:
+                # What moves the load by more pushes back by more: the gear takes no power.
+                turn = 2 * m["ratio"] * motor
+                twist += error * math.sin(turn)
+                lever += error * 2 * m["ratio"] * math.cos(turn)
+            spring = m["stiffness"] * twist + m["damping"] * (lever * motor_v - v)
+            motor_v += (acting - lever * spring - cogging) / m["motor_mass"] * STEP
             motor += motor_v * STEP
             v += (spring - force) / m["mass"] * STEP
         else:
