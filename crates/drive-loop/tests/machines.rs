@@ -13,7 +13,7 @@ use independent_axis::{
 #[derive(Clone, Debug)]
 pub enum Machine {
     /// The paper's; the command is late by so many periods.
-    Screw(Box<Parameters>, usize),
+    Screw(Parameters, usize),
     Carriage(Carriage),
 }
 
@@ -84,7 +84,7 @@ impl Machine {
     /// The same with the command so many periods later.
     pub fn later(&self, by: usize) -> Self {
         match self {
-            Self::Screw(p, late) => Self::Screw(p.clone(), late + by),
+            Self::Screw(p, late) => Self::Screw(*p, late + by),
             Self::Carriage(c) => {
                 let mut other = *c;
                 other.control.late += by;
@@ -97,7 +97,7 @@ impl Machine {
     pub fn with_gains(&self, kv: f64, speed: [f64; 2]) -> Self {
         match self {
             Self::Screw(p, late) => {
-                let mut other = p.clone();
+                let mut other = *p;
                 other.position_gain = kv / p.travel();
                 [other.speed_p, other.speed_i] = speed;
                 Self::Screw(other, *late)
@@ -275,14 +275,11 @@ impl Machine {
             let [c, d] = amplitude(pushed, window.clone(), *f, |k| added(pushed[k].time));
             a.hypot(b) / c.hypot(d)
         };
-        let most = at.iter().map(one).fold(0.0, |most: f64, one| {
-            if one.is_nan() {
-                f64::INFINITY
-            } else {
-                most.max(one)
-            }
-        });
-        most
+        let above = |most: f64, one: f64| match one.is_nan() {
+            true => f64::INFINITY,
+            false => most.max(one),
+        };
+        at.iter().map(one).fold(0.0, above)
     }
 
     /// Samples of 2 s from 4 s on.
@@ -322,7 +319,7 @@ fn amplitude(
 }
 
 pub fn screw(p: &Parameters, late: usize) -> Machine {
-    Machine::Screw(Box::new(*p), late)
+    Machine::Screw(*p, late)
 }
 
 /// The rack of `data/axes/rack.toml`.
