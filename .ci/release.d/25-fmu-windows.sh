@@ -5,8 +5,8 @@ source .ci/release.d/lib.bash
 export CARGO_INCREMENTAL=0
 
 target=x86_64-pc-windows-gnu
-rustup target list --installed 2>/dev/null | grep -qx $target ||
-  { skipped "the Rust target $target is not installed (rustup target add $target): no library for Windows was built"; exit 0; }
+rustup target list --installed 2>/dev/null | grep -qx $target || rustup target add $target >/dev/null 2>&1 ||
+  { skipped "the Rust target $target is not installed and cannot be (rustup target add $target): no library for Windows was built"; exit 0; }
 have x86_64-w64-mingw32-gcc gcc-mingw-w64-x86-64 ||
   { skipped "no linker for Windows (Debian: gcc-mingw-w64-x86-64): no library was built"; exit 0; }
 have wine wine wine64 || true

@@ -5,7 +5,9 @@ use std::f64::consts::{PI, TAU};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use axis_pipeline::drive_terms::{losses, of_axis, over_position, over_turn, terms};
+use axis_pipeline::drive_terms::{
+    Term, gain_terms, losses, of_axis, over_position, over_turn, terms,
+};
 use axis_pipeline::moves::{Moves, NamedMotion};
 use axis_pipeline::strategies::{Predictors, STRATEGIES, named, reversal_start};
 use axis_sim::effects::{ActiveEffect, Effect};
@@ -345,4 +347,79 @@ fn effects_that_depend_on_position_are_tabled() {
         );
         assert!((row[2] - 2e-6 * row[0].sin()).abs() < 1e-12, "{row:?}");
     }
+}
+
+/// Parameters of makers with the values of the paper's axis, by hand: k_p = 0.0678 A/rpm at 1.641 N·m/A, T_n = 0.0678/0.7122 s,
+/// Kv = 46.7/s.
+#[test]
+fn parameters_of_drives_have_their_units() {
+    let liu = axis("liu2025.toml");
+    let list = terms(&liu, &of_axis(&liu).unwrap());
+    let entered = |list: &[Term], term: &str, drive: &str| {
+        let term = list.iter().find(|t| t.name == term).unwrap();
+        let all = &term.parameters;
+        all.iter()
+            .find(|p| p.drive == drive)
+            .map(|p| (p.parameter, p.value, p.unit))
+    };
+    let gain = 0.0678 * 30.0 / PI * 1.641;
+    let time = 0.0678 / 0.7122;
+    // 280.2 rpm per mm, 10 mm a turn.
+    let kv = 280.2 / 60.0 * 10.0;
+    for (term, drive, parameter, value, unit) in [
+        ("speed_gain", "SINAMICS S120", "p1460", gain, None),
+        (
+            "speed_gain",
+            "SINAMICS S210",
+            "p1460",
+            gain,
+            Some("N·m·s/rad"),
+        ),
+        (
+            "speed_integral_time",
+            "SINAMICS S210",
+            "p1462",
+            1e3 * time,
+            Some("ms"),
+        ),
+        ("speed_integral_time", "AX8000", "3140:02", time, Some("s")),
+        (
+            "position_gain",
+            "SINUMERIK 840D",
+            "MD32200",
+            0.06 * kv,
+            Some("1000/min"),
+        ),
+        (
+            "position_gain",
+            "TwinCAT CNC",
+            "P-AXIS-00099",
+            100.0 * kv,
+            Some("0.01/s"),
+        ),
+        ("current_q_gain", "AX5000", "S-0-0106", 8.805, Some("V/A")),
+    ] {
+        let (number, found, in_unit) = entered(&list, term, drive).unwrap();
+        let found = found.unwrap();
+        assert_eq!((number, in_unit), (parameter, unit), "{term} {drive}");
+        assert!(
+            (found / value - 1.0).abs() < 1e-9,
+            "{term} {drive}: {found} {value}"
+        );
+    }
+    let (number, value, _) = entered(&list, "inertia_total", "SINAMICS S210").unwrap();
+    assert_eq!((number, value), ("p1498", None));
+    // A linear motor has no torque, and its speed gain is no parameter of a motor that turns.
+    let linear = axis("linear-motor.toml");
+    let list = terms(&linear, &of_axis(&linear).unwrap());
+    assert!(entered(&list, "speed_gain", "SINAMICS S210").is_none());
+    assert!(entered(&list, "speed_integral_time", "SINAMICS S210").is_some());
+    // A low pass of 100 Hz is a smoothing time of 1/(2π 100 Hz).
+    let mut slow = liu.clone();
+    slow.control
+        .change(|own| own.set("speed_lowpass", 100.0))
+        .unwrap();
+    let list = gain_terms(&slow);
+    let (_, value, _) = entered(&list, "speed_lowpass", "SINAMICS S210").unwrap();
+    assert!((value.unwrap() - 1.591549).abs() < 1e-5);
 }

@@ -2,6 +2,8 @@
 
 mod analytic;
 mod compliance;
+mod five_machines;
+mod machines;
 mod measured;
 mod support;
 mod sweep;

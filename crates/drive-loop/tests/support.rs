@@ -4,8 +4,16 @@ use axis_sim::Axis;
 
 /// An example axis of the project.
 pub fn example(name: &str) -> Axis {
-    let file = format!("{}/../../data/axes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    Axis::read(file.as_ref()).unwrap()
+    Axis::read(example_file(name).as_ref()).unwrap()
+}
+
+/// Its text.
+pub fn example_text(name: &str) -> String {
+    std::fs::read_to_string(example_file(name)).unwrap()
+}
+
+fn example_file(name: &str) -> String {
+    format!("{}/../../data/axes/{name}.toml", env!("CARGO_MANIFEST_DIR"))
 }
 
 /// A slide of `MASS` kg with viscous friction `VISCOUS` under a force that follows its command within

@@ -20,6 +20,11 @@ fn terms_tables_and_loss_are_written_with_their_units() {
         said.contains("kg·cm²") && said.contains("N·m/(1000 rpm)"),
         "{said}"
     );
+    assert!(
+        said.contains("SINAMICS S120 p1460, SINAMICS S210 p1460, AX5000 S-0-0100")
+            && said.contains("AX8000 3140:02 (0.095198 s)"),
+        "{said}"
+    );
     let json: Value =
         serde_json::from_slice(&std::fs::read(out.join("drive.json")).unwrap()).unwrap();
     let terms = json["terms"].as_array().unwrap();

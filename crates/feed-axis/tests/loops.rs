@@ -36,6 +36,23 @@ fn a_new_axis_is_looked_at_tuned_and_follows_better() {
     assert_validates("tuning", &found);
     let keys = found["keys"].as_array().unwrap();
     assert!(keys.iter().any(|k| k["key"] == "kv_per_s"), "{keys:?}");
+    // The gains that were set, as drives take them.
+    let of_drive = found["drive"].as_array().unwrap();
+    let gain = of_drive.iter().find(|t| t["name"] == "speed_gain").unwrap();
+    let set = keys
+        .iter()
+        .find(|k| k["key"] == "speed_proportional_a_per_rpm");
+    // A per rpm to N·m·s/rad at 1.641 N·m/A.
+    let expected = set.unwrap()["value"].as_f64().unwrap() * 30.0 / std::f64::consts::PI * 1.641;
+    let sinamics = &gain["parameters"][1];
+    assert_eq!(
+        (&sinamics["drive"], &sinamics["parameter"]),
+        (&"SINAMICS S210".into(), &"p1460".into())
+    );
+    assert!(
+        (sinamics["value"].as_f64().unwrap() / expected - 1.0).abs() < 1e-4,
+        "{sinamics}"
+    );
 
     // Of the file that was written, analysed by itself: within the limits, but for the digits of its keys.
     let after = json(&["analyse", "--axis", &tuned, "--format", "json"]);

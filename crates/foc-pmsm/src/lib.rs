@@ -43,7 +43,7 @@
 //! - [`Pmsm::mtpa`], [`Pmsm::mtpv`], [`Pmsm::operating_currents`]: the currents of a torque.
 //! - [`saturation`]: flux maps, and the motor with them.
 //! - [`LinearMotor`]: metres and newtons.
-//! - [`sensorless`]: flux observer, start by a turning current.
+//! - [`sensorless`]: flux observer, start by a turning current, signal injection at standstill.
 //!
 //! Laws are immutable and validated once; states are plain structs of the
 //! caller's. After construction nothing fails, panics or allocates. A NaN passes

@@ -7,6 +7,7 @@ mod dead_time;
 mod field_weakening;
 mod frames;
 mod gains;
+mod injection;
 mod inverter;
 mod linear_motor;
 mod modulation;

@@ -28,21 +28,21 @@ pub struct Command {
 
 /// A sum that is held, and an output within a limit.
 #[derive(Clone, Copy, Debug)]
-struct Proportional {
-    p: f64,
-    i: f64,
-    held: f64,
+pub(crate) struct Proportional {
+    pub p: f64,
+    pub i: f64,
+    pub held: f64,
 }
 
 impl Proportional {
     /// Output before any limit, and what the held sum would be.
-    fn ask(&self, error: f64, period: f64) -> (f64, f64) {
+    pub fn ask(&self, error: f64, period: f64) -> (f64, f64) {
         let held = self.held + self.i * error * period;
         (self.p * error + held, held)
     }
 
     /// Keeps the sum, unless the output is limited and the error presses further.
-    fn keep(&mut self, asked: (f64, f64), given: f64, error: f64) {
+    pub fn keep(&mut self, asked: (f64, f64), given: f64, error: f64) {
         if asked.0 == given || error * (asked.0 - given) <= 0.0 {
             self.held = asked.1;
         }

@@ -26,12 +26,15 @@
 //!
 //! [`slide_log`] is another machine, a slide on a linear motor whose drive has more in it than its axis file
 //! says. [`bench_log`] is a motor on a bench that never rests, [`spun_log`] a small one that is spun slowly,
-//! [`joint_log`] a robot joint under gravity.
+//! [`joint_log`] a robot joint under gravity. [`run_carriage`] is a carriage on a rack, a belt or a linear motor under a
+//! drive that may be pushed and late.
 //!
 //! [`cases`] holds the table of what is hidden; [`write_case`] writes one as two logs to
 //! fit, two to check, the axis file and the truth.
 
 mod bench;
+mod carriage;
+mod carriage_drive;
 pub mod cases;
 mod chain;
 mod drive;
@@ -55,6 +58,8 @@ mod spin;
 mod truth;
 
 pub use bench::{BenchFriction, bench_log};
+pub use carriage::{Carriage, CarriageSample, Transmission, run_carriage};
+pub use carriage_drive::{CarriageControl, CarriageMotor};
 pub use drive::{Command, Drive, Reading};
 pub use error::IndependentError;
 pub use heat::{HeatLaws, HeatNumbers, HeatedScrew, Viscosity};

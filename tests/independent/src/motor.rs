@@ -28,6 +28,17 @@ impl Motor {
         }
     }
 
+    /// A motor of these numbers: pole pairs (of a linear motor π over the pole pitch, 1/m), flux linkage (Wb),
+    /// resistance (Ω) and inductances d, q (H).
+    pub fn of(pole_pairs: f64, flux: f64, resistance: f64, inductance: [f64; 2]) -> Self {
+        Self {
+            pole_pairs,
+            flux,
+            resistance,
+            inductance,
+        }
+    }
+
     fn rate(&self, [d, q]: [f64; 2], [ud, uq]: [f64; 2], speed: f64) -> [f64; 2] {
         let (w, [ld, lq]) = (self.pole_pairs * speed, self.inductance);
         [

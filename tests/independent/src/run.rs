@@ -84,10 +84,12 @@ pub fn run(
 /// What comes into the loop from outside in a control period.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Push {
-    /// Added to the q current's reference, A.
+    /// Added to what the speed controller asks for: to the q current's reference, A, or to a torque, N·m.
     pub current: f64,
     /// Force on the table in positive direction, N.
     pub force: f64,
+    /// Added to the position that the position controller reads, m.
+    pub position: f64,
 }
 
 /// [`run`] with what comes in from outside at each time, s.
@@ -117,7 +119,11 @@ pub fn run_pushed(
         let seen = noise.on(machine.seen(), random);
         let from_outside = push(time);
         let reference = [wanted.position, wanted.velocity];
-        let command = drive.step_pushed(reference, &seen, from_outside.current);
+        let read = Reading {
+            position: seen.position + from_outside.position,
+            ..seen
+        };
+        let command = drive.step_pushed(reference, &read, from_outside.current);
         if k >= 0 {
             each(&Sample {
                 time,

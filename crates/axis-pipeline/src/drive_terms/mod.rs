@@ -2,6 +2,7 @@
 //! that loses against the plan. `docs/drive-terms.md` says how it is entered.
 
 mod gains;
+mod parameters;
 mod tables;
 mod term;
 mod terms;
@@ -14,9 +15,10 @@ use serde::Serialize;
 use crate::compensation::{compensate_with, find};
 use crate::strategies::{NONE, Predictors, STRATEGIES, StrategyKind, named, reversal_start};
 use crate::{Figures, PipelineError};
+pub use parameters::DriveParameter;
 pub use tables::{TermTable, over_position, over_turn};
 pub use term::Term;
-pub use terms::terms;
+pub use terms::{gain_terms, terms};
 
 /// Tracking errors of a trajectory, µm or µrad.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -1,9 +1,11 @@
 //! The numbers by name.
 
 use axis_sim::Axis;
+use axis_sim::mechanism::Freedom;
 use compensator::DriveTerms;
 
 use super::gains::gains;
+use super::parameters::parameters;
 use super::term::{Line, Term};
 use super::units::Units;
 
@@ -197,7 +199,22 @@ pub fn terms(axis: &Axis, of: &DriveTerms) -> Vec<Term> {
         ),
     ];
     let list = list.into_iter().map(Term::from).chain(gains(axis));
-    list.filter(|t| t.drive_value.is_finite()).collect()
+    placed(axis, list.filter(|t| t.drive_value.is_finite()))
+}
+
+/// Gains and filters of the axis file's own drive alone.
+pub fn gain_terms(axis: &Axis) -> Vec<Term> {
+    placed(axis, gains(axis).into_iter())
+}
+
+/// With the parameters of drives.
+fn placed(axis: &Axis, terms: impl Iterator<Item = Term>) -> Vec<Term> {
+    let is_rotary = axis.mechanism.motor_freedom() == Freedom::Rotary;
+    let one = |term: Term| Term {
+        parameters: parameters(&term, is_rotary),
+        ..term
+    };
+    terms.map(one).collect()
 }
 
 /// Greatest error of a number that was rounded to six digits, as axis files are written (`SixDigits`), as a share of it: half of

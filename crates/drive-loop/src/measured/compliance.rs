@@ -108,20 +108,29 @@ pub(crate) struct ToEffort {
     pub motor: FrequencyResponse,
     /// Whether it is the angle's.
     pub is_angle: bool,
+    /// Whether the motor is on the load and read by its sensor: `motor` is the load's position then.
+    pub is_one_body: bool,
     pub load: FrequencyResponse,
     pub effort: FrequencyResponse,
 }
 
 impl ToEffort {
     /// Responses to what the drive really exerts, or why there are none.
-    pub fn of(recorded: &Recorded<'_>, averaging: Averaging, at: &ModelAt) -> Result<Self, String> {
+    pub fn of(
+        axis: &Axis,
+        recorded: &Recorded<'_>,
+        averaging: Averaging,
+        at: &ModelAt,
+    ) -> Result<Self, String> {
         let sensing = &at.model.sensing;
         if sensing.load_from_motor {
             return Err("the axis has no sensor at the load".to_owned());
         }
+        // A motor on the load itself: one sensor shows both.
+        let is_one_body = sensing.motor_from_load && !axis.mechanism.has_motor_encoder();
         let motor = match sensing.motor_from_load {
             false => recorded.angle.or(recorded.speed),
-            true => None,
+            true => Some(recorded.load).filter(|_| is_one_body),
         };
         let motor = motor.ok_or("the log has no sensor of the motor beside that of the load (motor_angle_rad or motor_speed_rad_s)")?;
         let effort = recorded.effort.ok_or_else(|| match recorded.command_unit {
@@ -130,7 +139,7 @@ impl ToEffort {
                 "the log does not have both the command and the actual current, torque or force ({unit})"
             ),
         })?;
-        let is_angle = recorded.angle.is_some();
+        let is_angle = is_one_body || recorded.angle.is_some();
         let estimate = |input: &[f64], output: &[f64], differenced: bool| {
             let all: Vec<Record<'_>> = recorded.records_from(input, output, differenced).collect();
             let found = FrequencyResponse::of_all(&all, Estimator::ThreeSignals, averaging);
@@ -139,6 +148,7 @@ impl ToEffort {
         Ok(Self {
             motor: estimate(effort, motor, is_angle)?,
             is_angle,
+            is_one_body,
             load: estimate(effort, &recorded.load, true)?,
             effort: estimate(recorded.command, effort, false)?,
         })
@@ -163,7 +173,10 @@ impl MeasuredCompliance {
         };
         let fitted = fewest(&motor, &settings)
             .map_err(|error| format!("the motor's response has no fit: {error}"))?;
-        let (modes, notes) = modes_of(axis, &fitted, &load, &settings, motor.step_hz)?;
+        let (modes, mut notes) = modes_of(axis, &fitted, &load, &settings, motor.step_hz)?;
+        if measured.is_one_body {
+            notes.push("one sensor shows motor and load, which are one body by the axis file: the force is one where the motor's acts".to_owned());
+        }
         let mut lines = lines(axis, at, plant, &modes, &measured.effort);
         // Beyond the fitted band nothing is known of modes.
         lines.retain(|line| line.frequency_hz <= settings.band_hz[1]);
@@ -267,12 +280,15 @@ fn true_responses(at: &ModelAt, measured: &ToEffort) -> (FrequencyResponse, Freq
         crate::law::shown(&at.model, &plant)
     };
     let s = |hz: f64| J * (TAU * hz);
+    let of_load = |hz: f64| s(hz) / shown(hz, [ZERO, ZERO, ONE])[2];
+    let load = changed(&measured.load, &of_load);
+    if measured.is_one_body {
+        let travel = at.model.model.travel;
+        return (changed(&measured.motor, &|hz| of_load(hz) / travel), load);
+    }
     let motor = changed(&measured.motor, &|hz| {
         let [angle, speed, _] = shown(hz, [ONE, s(hz), ZERO]);
         s(hz) / if measured.is_angle { angle } else { speed }
-    });
-    let load = changed(&measured.load, &|hz| {
-        s(hz) / shown(hz, [ZERO, ZERO, ONE])[2]
     });
     (motor, load)
 }

@@ -260,7 +260,7 @@ impl MeasuredDrive {
             false => None,
         };
         let compliance = match is_usable {
-            true => ToEffort::of(&recorded, averaging, &at)
+            true => ToEffort::of(axis, &recorded, averaging, &at)
                 .and_then(|measured| MeasuredCompliance::of(axis, &at, &plant, &measured, &fitted)),
             false => Err("the measurement is not usable".to_owned()),
         };

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use axis_pipeline::drive_terms::{Term, gain_terms};
 use axis_report::{Cell, Page, Section, Table, engineering};
 use axis_sim::{Axis, SixDigits};
 use clap::Args;
@@ -14,6 +15,7 @@ use serde::Serialize;
 use super::analyse::Ranges;
 use super::control_table::with_tuned;
 use super::discover::moved;
+use super::export::drive::entered;
 use super::frf;
 use crate::context::{DEFAULT_AXIS, axis_with, read_text};
 use crate::out_file;
@@ -75,6 +77,8 @@ pub struct TuneFound {
     tuning: Tuning,
     /// Keys that were set, in the units of the file.
     keys: Vec<TunedKey>,
+    /// Gains and filters of the tuned file in the units of drives, with the parameters that take them.
+    drive: Vec<Term>,
     /// The axis file that was written.
     axis_file: PathBuf,
 }
@@ -109,6 +113,7 @@ pub fn command(options: &Options) -> Result<()> {
     let found = TuneFound {
         tuning: tuned.report,
         keys,
+        drive: of_drive(&written, options.current),
         axis_file: options.out.clone(),
     };
     let mut text = words(&found);
@@ -119,6 +124,13 @@ pub fn command(options: &Options) -> Result<()> {
     }
     text += &shown(&options.out);
     print("tune", &Worded { text, value: found })
+}
+
+/// Gains in the units of drives; of the current controllers where they were set.
+fn of_drive(axis: &Axis, current: bool) -> Vec<Term> {
+    let mut all = gain_terms(axis);
+    all.retain(|term| current || !term.name.starts_with("current_"));
+    all
 }
 
 /// The text of an axis file `from`, with the keys of its tuned axis, for a file in another folder; and
@@ -151,6 +163,14 @@ fn words(found: &TuneFound) -> String {
             key.key,
             SixDigits(key.value).to_string()
         );
+    }
+    text += "in a drive (`export drive` has more)\n";
+    for term in &found.drive {
+        let value = SixDigits(term.drive_value).to_string();
+        let _ = writeln!(text, "  {:<44} {value:>12} {}", term.name, term.drive_unit);
+        if let Some(line) = entered(term) {
+            let _ = writeln!(text, "      {line}");
+        }
     }
     for line in lines(t) {
         let _ = writeln!(text, "{line}");

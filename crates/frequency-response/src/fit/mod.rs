@@ -305,9 +305,13 @@ fn target(response: &FrequencyResponse, settings: &FitSettings) -> (Target, Vec<
 
 /// The unknowns of the order with the least of Schwarz' criterion (G. Schwarz, Annals of Statistics 6
 /// (1978) 461–464, doi:10.1214/aos/1176344136), for errors of unknown size, and their weighted squares.
+///
+/// An order whose delay the lines do not determine ([`VAGUE`]) is taken only if there is no other:
+/// one of its poles lies so far above the lines that it does what a delay does, and residues with one and the other grow
+/// against each other without end.
 fn best_order(target: &Target, settings: &FitSettings) -> Option<(Parameters, f64)> {
     let delays = delays(settings.most_delay_s * target.plane.scale);
-    let mut best: Option<(f64, Parameters, f64)> = None;
+    let mut best: Option<(Standing, Parameters, f64)> = None;
     for order in 1..=settings.most_poles {
         // Once a fit is near, it knows the delay: another order changes it by little.
         let near = best.as_ref().map(|(_, parameters, _)| parameters.delay());
@@ -329,11 +333,39 @@ fn best_order(target: &Target, settings: &FitSettings) -> Option<(Parameters, f6
         // Below what the floor allows no order is better than another.
         let mean = (squares / numbers).max(1e-6);
         let criterion = numbers * mean.ln() + unknown * numbers.ln();
-        if best.as_ref().is_none_or(|(least, ..)| criterion < *least) {
-            best = Some((criterion, parameters, squares));
+        let standing = Standing {
+            is_vague: refine::delay_deviation(target, &parameters).is_none_or(|d| d > VAGUE),
+            criterion,
+        };
+        if best
+            .as_ref()
+            .is_none_or(|(least, ..)| standing.is_before(least))
+        {
+            best = Some((standing, parameters, squares));
         }
     }
     best.map(|(_, parameters, squares)| (parameters, squares))
+}
+
+/// Deviation of a delay, in radians at the highest line, above which the lines do not determine it: so many per cent of
+/// a residue are its direction alone then.
+const VAGUE: f64 = 0.1;
+
+/// How good an order is.
+#[derive(Clone, Copy, Debug)]
+struct Standing {
+    /// Whether the lines do not determine its delay.
+    is_vague: bool,
+    criterion: f64,
+}
+
+impl Standing {
+    fn is_before(&self, other: &Self) -> bool {
+        match self.is_vague == other.is_vague {
+            true => self.criterion < other.criterion,
+            false => other.is_vague,
+        }
+    }
 }
 
 /// Most poles for which all delays are tried.

@@ -184,6 +184,14 @@ pub(crate) fn described(
     Some(described_with(&target.plane, parameters, &covariance))
 }
 
+/// Deviation of the delay, in the scale of the target, of lines that are as exact as they say; none where it is not
+/// determined at all.
+pub(crate) fn delay_deviation(target: &Target, parameters: &Parameters) -> Option<f64> {
+    let (matrix, _) = normal(target, parameters);
+    let last = parameters.count() - 1;
+    Some(inverse(&matrix)?[(last, last)].max(0.0).sqrt())
+}
+
 /// The same, the unknowns having this covariance.
 pub(crate) fn described_with(
     plane: &Plane,

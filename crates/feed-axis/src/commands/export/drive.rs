@@ -4,7 +4,7 @@ use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 
 use axis_pipeline::ErrorUnit;
-use axis_pipeline::drive_terms::{self, Loss, Term, TermTable};
+use axis_pipeline::drive_terms::{self, DriveParameter, Loss, Term, TermTable};
 use axis_sim::SixDigits;
 use clap::Args;
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -130,6 +130,20 @@ fn text_of(table: &TermTable) -> String {
     text
 }
 
+/// Where a term is entered, if a maker's parameter for it is known; with the value where it is another than in the
+/// term's unit for drives.
+pub fn entered(term: &Term) -> Option<String> {
+    let one = |p: &DriveParameter| {
+        let is_other = |value: &f64| (value / term.drive_value - 1.0).abs() > 1e-9;
+        let value = p.value.filter(is_other).map_or(String::new(), |value| {
+            format!(" ({} {})", SixDigits(value), p.unit.unwrap_or_default())
+        });
+        format!("{} {}{value}", p.drive, p.parameter)
+    };
+    let all: Vec<String> = term.parameters.iter().map(one).collect();
+    (!all.is_empty()).then(|| all.join(", "))
+}
+
 /// The export as people read it.
 fn words(export: &Export<'_>, out: &Path) -> std::result::Result<String, fmt::Error> {
     let mut text = format!("drive terms of {}\n", export.axis);
@@ -141,6 +155,9 @@ fn words(export: &Export<'_>, out: &Path) -> std::result::Result<String, fmt::Er
             SixDigits(term.drive_value).to_string(),
             term.drive_unit
         )?;
+        if let Some(line) = entered(term) {
+            writeln!(text, "      {line}")?;
+        }
     }
     for difference in &export.control_differences {
         writeln!(text, "warning: {difference}")?;
