@@ -130,7 +130,7 @@ impl ToEffort {
         let is_one_body = sensing.motor_from_load && !axis.mechanism.has_motor_encoder();
         let motor = match sensing.motor_from_load {
             false => recorded.angle.or(recorded.speed),
-            true => Some(recorded.load).filter(|_| is_one_body),
+            true => Some(&*recorded.load).filter(|_| is_one_body),
         };
         let motor = motor.ok_or("the log has no sensor of the motor beside that of the load (motor_angle_rad or motor_speed_rad_s)")?;
         let effort = recorded.effort.ok_or_else(|| match recorded.command_unit {
