@@ -21,6 +21,13 @@ impl State {
         }
     }
 
+    /// The same with a number of an effect (which effect, which of its numbers) moved by so much.
+    pub(crate) fn with_moved(&self, (effect, parameter): (usize, usize), by: f64) -> Self {
+        let mut moved = self.clone();
+        moved.effects[effect].values[parameter] += by;
+        moved
+    }
+
     /// Takes an effect out, and with it the forms of it; their places, each as it was
     /// when its turn came.
     pub(crate) fn remove(&mut self, index: usize) -> Vec<usize> {
