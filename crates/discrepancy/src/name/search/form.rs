@@ -86,6 +86,8 @@ impl Search<'_> {
         });
         let fitter = self.fitter();
         let scales = Scales::of(self.machine);
+        // One that ended as something simpler would do so again.
+        let forms = forms.filter(|form| !self.unseen.contains(&form.effect.name));
         let candidate = |form: ActiveEffect| Candidate {
             columns: responses(&fitter, &self.fit, form.effect, &form.values),
             effect: form.effect,
