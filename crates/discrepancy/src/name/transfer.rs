@@ -37,9 +37,13 @@ impl Transfer {
         self.half_width.is_finite().then(ends)
     }
 
-    /// By how much the interval of the ratio stays away from what it may be; positive if the size is another.
+    /// By how much the interval of the ratio stays away from what it may be; positive if the size is another. Logs that do not
+    /// tell the size from none say nothing of it.
     pub(crate) fn excess(&self) -> f64 {
-        (self.ratio - 1.0).abs() - self.half_width - TRANSFERS
+        match self.half_width <= 1.0 {
+            true => (self.ratio - 1.0).abs() - self.half_width - TRANSFERS,
+            false => f64::NEG_INFINITY,
+        }
     }
 }
 
@@ -51,7 +55,7 @@ mod tests {
     fn a_size_that_differs_by_a_fifth_or_by_what_chance_explains_is_the_same() {
         let of = |ratio: f64, half_width: f64| Transfer { ratio, half_width }.excess();
         assert!(of(0.85, 0.03) < 0.0 && of(1.19, 0.0) < 0.0);
-        assert!(of(0.5, 0.4) < 0.0 && of(-1.7, 3.6) < 0.0);
+        assert!(of(0.5, 0.4) < 0.0 && of(-1.7, 3.6) < 0.0 && of(-1.25, 2.05) < 0.0);
         assert!(of(0.42, 0.31) > 0.0 && of(0.65, 0.1) > 0.0 && of(1.5, 0.2) > 0.0);
         assert!(
             Transfer {
