@@ -5,6 +5,7 @@ use axis_sim::{Axis, ClosedLoop, Replay, ReplayError, Trace};
 use rayon::prelude::*;
 
 use super::set::{LogSet, Prepared};
+use super::share::misfit;
 use super::state::State;
 
 /// Runs with sensors as the file has them, whose mean is taken.
@@ -12,6 +13,9 @@ const RUNS: u64 = 8;
 
 /// Time over which the mean is weighed against its chance, s: holding and reversing take some tens of ms.
 const WINDOW: f64 = 0.04;
+
+/// Fall of minus twice the log-likelihood from which on a log is taken to have the sensors of the file: chance in one number.
+const LIKELIER: f64 = 25.0;
 
 impl LogSet {
     /// Simulates each log with what the fast, quiet simulation leaves out, and keeps the difference.
@@ -38,32 +42,42 @@ impl LogSet {
         if exact.is_none() && sensed.is_none() {
             return Ok(());
         }
-        let one = |log: &Prepared| -> Result<Vec<Vec<f64>>, ReplayError> {
+        let one = |log: &Prepared| -> Result<(Trace, [Vec<Vec<f64>>; 2]), ReplayError> {
+            let fast = log.answer.run(&known, &state.effects, None)?;
+            let mut of_mesh = vec![vec![0.0; log.log.len()]; self.channels.len()];
             let Some(replay) = log.answer.replay() else {
-                return Ok(log.defect.clone());
+                return Ok((fast, [of_mesh.clone(), of_mesh]));
             };
-            let fast = replay.run(&known, &state.effects, None)?;
-            let mut defect = vec![Vec::new(); self.channels.len()];
             if let Some(exact) = &exact {
                 let exact = replay.follow(exact, |_| ())?;
-                defect = self.differences(&exact, &fast);
+                of_mesh = self.differences(&exact, &fast);
             }
-            let window = ((WINDOW / log.period) as usize).max(1);
+            let mut of_both = of_mesh.clone();
             if let Some(sensed) = &sensed {
+                let window = ((WINDOW / log.period) as usize).max(1);
                 let mean = self.of_sensors(replay, sensed, &fast, window)?;
-                for (sum, mean) in defect.iter_mut().zip(mean) {
-                    sum.resize(mean.len(), 0.0);
+                for (sum, mean) in of_both.iter_mut().zip(mean) {
                     sum.iter_mut()
                         .zip(mean)
                         .for_each(|(sum, mean)| *sum += mean);
                 }
             }
-            Ok(defect)
+            Ok((fast, [of_mesh, of_both]))
         };
-        let defects: Vec<Vec<Vec<f64>>> =
-            (self.logs.par_iter().map(one)).collect::<Result<_, _>>()?;
-        for (log, defect) in self.logs.iter_mut().zip(defects) {
-            log.defect = defect;
+        let found: Vec<_> = (self.logs.par_iter().map(one)).collect::<Result<_, _>>()?;
+        let (traces, defects): (Vec<Trace>, Vec<_>) = found.into_iter().unzip();
+        // The sensors of the file may be others than those of the log, or have more noise, which blurs their steps.
+        let [of_mesh, of_both] = [0, 1].map(|which| {
+            let mut set = self.clone();
+            for (log, defects) in set.logs.iter_mut().zip(&defects) {
+                log.defect.clone_from(&defects[which]);
+            }
+            let rest = set.rest(&traces);
+            rest.iter().map(|log| misfit(log)).collect::<Vec<f64>>()
+        });
+        for (l, (log, [mesh, both])) in self.logs.iter_mut().zip(defects).enumerate() {
+            let is_likelier = of_both[l] < of_mesh[l] - LIKELIER;
+            log.defect = if is_likelier { both } else { mesh };
         }
         Ok(())
     }
@@ -99,7 +113,11 @@ impl LogSet {
     }
 }
 
-/// The mean of runs, of which each window keeps the share that chance does not explain (Wiener's).
+/// Power of a mean over that by chance from which on a window of it is kept: noise of twenty independent samples or more in
+/// a window has as much in one of two hundred.
+const CLEAR: f64 = 2.0;
+
+/// The mean of runs, of which each window keeps the share that chance does not explain (Wiener's), if that is clear.
 fn mean_beyond_chance(runs: &[&[f64]], window: usize) -> Vec<f64> {
     let n = runs.len() as f64;
     let samples = runs.first().map_or(0, |run| run.len());
@@ -113,10 +131,9 @@ fn mean_beyond_chance(runs: &[&[f64]], window: usize) -> Vec<f64> {
         let chance: f64 = (means.iter().enumerate())
             .map(|(k, m)| by_chance(w * window + k, *m))
             .sum();
-        let share = if power > chance {
-            1.0 - chance / power
-        } else {
-            0.0
+        let share = match power > CLEAR * chance {
+            true => 1.0 - chance / power,
+            false => 0.0,
         };
         means.iter_mut().for_each(|m| *m *= share);
     }
