@@ -13,8 +13,6 @@ use std::f64::consts::TAU;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::term::Term;
-
 /// A parameter of a maker's drive or control for a term.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct DriveParameter {
@@ -181,16 +179,16 @@ const ROWS: &[Row] = &[
     row("standing_load", AX8000, "3140:05", ONE, Some("N·m")).rotary(),
 ];
 
-/// The parameters of a term of an axis whose motor turns, or is linear.
-pub(super) fn parameters(term: &Term, is_rotary: bool) -> Vec<DriveParameter> {
-    let of = ROWS.iter().filter(|row| row.term == term.name);
+/// The parameters of a term by its name and its value in a drive's unit, of an axis whose motor turns, or is linear.
+pub(super) fn parameters(term: &str, drive_value: f64, is_rotary: bool) -> Vec<DriveParameter> {
+    let of = ROWS.iter().filter(|row| row.term == term);
     of.filter(|row| is_rotary || !row.is_rotary)
         .map(|row| DriveParameter {
             drive: row.drive,
             parameter: row.parameter,
             value: match row.enter {
-                Enter::Times(by) => Some(by * term.drive_value),
-                Enter::TimeConstant(by) => Some(by / (TAU * term.drive_value)),
+                Enter::Times(by) => Some(by * drive_value),
+                Enter::TimeConstant(by) => Some(by / (TAU * drive_value)),
                 Enter::More => None,
             },
             unit: row.unit,

@@ -211,7 +211,7 @@ pub fn gain_terms(axis: &Axis) -> Vec<Term> {
 fn placed(axis: &Axis, terms: impl Iterator<Item = Term>) -> Vec<Term> {
     let is_rotary = axis.mechanism.motor_freedom() == Freedom::Rotary;
     let one = |term: Term| Term {
-        parameters: parameters(&term, is_rotary),
+        parameters: parameters(term.name, term.drive_value, is_rotary),
         ..term
     };
     terms.map(one).collect()

@@ -17,6 +17,9 @@ const WINDOW: f64 = 0.04;
 /// Fall of minus twice the log-likelihood from which on a log is taken to have the sensors of the file: chance in one number.
 const LIKELIER: f64 = 25.0;
 
+/// By channel.
+type Defect = Vec<Vec<f64>>;
+
 impl LogSet {
     /// Simulates each log with what the fast, quiet simulation leaves out, and keeps the difference.
     /// A screw's fixed mesh is too stiff between its nodes by nanometres. A controller that sees steps does not
@@ -42,7 +45,7 @@ impl LogSet {
         if exact.is_none() && sensed.is_none() {
             return Ok(());
         }
-        let one = |log: &Prepared| -> Result<(Trace, [Vec<Vec<f64>>; 2]), ReplayError> {
+        let one = |log: &Prepared| -> Result<(Trace, [Defect; 2]), ReplayError> {
             let fast = log.answer.run(&known, &state.effects, None)?;
             let mut of_mesh = vec![vec![0.0; log.log.len()]; self.channels.len()];
             let Some(replay) = log.answer.replay() else {
