@@ -112,7 +112,7 @@ fn a_clean_axis_with_tuned_gains_lacks_nothing() {
     );
     let machine = Axis::read(file.as_ref()).unwrap();
     let fit = vec![tuned_rack(&machine, "fit.csv", [0.3, 0.02, -0.25], 21)];
-    let check = vec![tuned_rack(&machine, "check.csv", [0.2, -0.03, -0.15], 22)];
+    let check = vec![tuned_rack(&machine, "check.csv", [-0.2, 0.03, 0.15], 22)];
     let evidence = Evidence::new(&machine, fit, check, Vec::new()).unwrap();
     let settings = Settings::default();
     let (_, discovered) = evidence.discover(&machine, &settings, |_| ()).unwrap();
