@@ -5,7 +5,7 @@ use axis_sim::{Axis, ClosedLoop, Replay, ReplayError, Trace};
 use rayon::prelude::*;
 
 use super::set::{LogSet, Prepared};
-use super::share::misfit;
+use super::share::{BY_CHANCE, misfit};
 use super::state::State;
 
 /// Runs with sensors as the file has them, whose mean is taken.
@@ -13,9 +13,6 @@ const RUNS: u64 = 8;
 
 /// Time over which the mean is weighed against its chance, s: holding and reversing take some tens of ms.
 const WINDOW: f64 = 0.04;
-
-/// Fall of minus twice the log-likelihood from which on a log is taken to have the sensors of the file: chance in one number.
-const LIKELIER: f64 = 25.0;
 
 /// By channel.
 type Defect = Vec<Vec<f64>>;
@@ -29,12 +26,12 @@ impl LogSet {
     /// # Errors
     /// [`ReplayError`] if the machine does not run at this state.
     pub fn correct_defects(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
-        let known = machine.with_known(&state.shares);
-        let mut whole = known.clone();
-        whole.effects.extend_from_slice(&state.effects);
         if self.is_balanced() {
             return Ok(());
         }
+        let known = machine.with_known(&state.shares);
+        let mut whole = known.clone();
+        whole.effects.extend_from_slice(&state.effects);
         let exact = known.mechanism.exact_step();
         let exact = exact.map(|step| ClosedLoop::exact(&whole, step));
         let exact = exact.transpose()?.map(ClosedLoop::without_noise);
@@ -79,7 +76,7 @@ impl LogSet {
             rest.iter().map(|log| misfit(log)).collect::<Vec<f64>>()
         });
         for (l, (log, [mesh, both])) in self.logs.iter_mut().zip(defects).enumerate() {
-            let is_likelier = of_both[l] < of_mesh[l] - LIKELIER;
+            let is_likelier = of_both[l] < of_mesh[l] - BY_CHANCE;
             log.defect = if is_likelier { both } else { mesh };
         }
         Ok(())
@@ -152,8 +149,8 @@ mod tests {
     use super::mean_beyond_chance;
     use crate::answers::{LogSet, State};
 
-    /// Torque's means over 40 ms of what is left of a log, RMS: what holds and reverses, without what is noise.
-    fn slow_power(set: &LogSet, machine: &Axis) -> f64 {
+    /// Norm of the residual torque's means over 40 ms: standstill and reversals, with little of the noise.
+    fn slow_residual(set: &LogSet, machine: &Axis) -> f64 {
         let traces = set.simulate(machine, &State::initial(machine)).unwrap();
         let torque = set.channels.iter().position(|c| *c == "torque_ref_n_m");
         let rest = &set.rest(&traces)[0][torque.unwrap()];
@@ -188,7 +185,7 @@ mod tests {
         let log = || vec![("log".to_owned(), recorder.log().unwrap(), machine.period)];
         let without = LogSet::prepared(log(), &machine).unwrap();
         let with = LogSet::new(log(), &machine).unwrap();
-        let [without, with] = [without, with].map(|set| slow_power(&set, &machine));
+        let [without, with] = [without, with].map(|set| slow_residual(&set, &machine));
         println!("{with} of {without}");
         assert!(with < 0.1 * without, "{with} of {without}");
     }

@@ -6,11 +6,8 @@
 
 use axis_sim::{Axis, ReplayError};
 
-use super::share::misfit;
+use super::share::{BY_CHANCE, misfit};
 use super::{Answer, LogSet, Prepared, State};
-
-/// Fall of minus twice the log-likelihood below which a log begins as it did: one number by chance.
-const BY_CHANCE: f64 = 25.0;
 
 impl LogSet {
     /// Finds of each log, beside this state, how long before its first sample all loops of the control ran: of all cycles

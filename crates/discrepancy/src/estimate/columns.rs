@@ -32,7 +32,7 @@ fn steps_of(parameter: &EffectParameter, value: f64, on: &Scales) -> [f64; 2] {
 /// A derivative holds over a step if that over a part of it differs by less than this share.
 const HOLDS: f64 = 0.1;
 
-/// By how much a step is shortened, and how often at most: to a thousandth.
+/// By how much a step is shortened, and how often at most: to 1/625.
 const SHORTER: f64 = 5.0;
 const SHORTENED: usize = 4;
 

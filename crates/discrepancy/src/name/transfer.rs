@@ -3,7 +3,8 @@
 use crate::answers::{LogSet, Rest};
 
 /// Share by which the size on other motion may differ: laws of the library stand for those of a machine. Right names of
-/// seeds 10 and 12 of `docs/laws/run` differ by at most 0.18, those of the measured positioning stage (EMPS) by 0.15.
+/// seeds 10 and 12 of `docs/laws/run` that the check logs determine differ by at most 0.18, those of the measured
+/// positioning stage (EMPS) by 0.15.
 pub(crate) const TRANSFERS: f64 = 0.2;
 
 /// An effect's size, fitted to logs that were not used in its fit, over the size that it has.
