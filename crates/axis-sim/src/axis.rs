@@ -232,16 +232,6 @@ impl Axis {
         self.sensors.motor.is_some() || of_load && !self.mechanism.has_motor_encoder()
     }
 
-    /// Whether all position sensors show their quantity without noise and without steps.
-    pub fn senses_exactly(&self) -> bool {
-        let load = match &self.sensors.load {
-            LoadSensor::Fitted(sensor) => Some(sensor),
-            LoadSensor::Perfect | LoadSensor::Missing => None,
-        };
-        let all = load.into_iter().chain(&self.sensors.motor);
-        all.into_iter().all(|sensor| sensor.is_exact())
-    }
-
     /// Name of the load's position in logs.
     pub fn position_channel(&self) -> &'static str {
         match self.freedom() {

@@ -6,13 +6,11 @@ use rayon::prelude::*;
 
 use super::set::{LogSet, Prepared};
 use super::share::{BY_CHANCE, misfit};
+use super::shown::{Shown, as_shown, window};
 use super::state::State;
 
-/// Runs with sensors as the file has them, whose mean is taken.
+/// Runs with sensors as the log shows them, whose mean is taken.
 const RUNS: u64 = 8;
-
-/// Time over which the mean is weighed against its chance, s: holding and reversing take some tens of ms.
-const WINDOW: f64 = 0.04;
 
 /// By channel.
 type Defect = Vec<Vec<f64>>;
@@ -30,66 +28,50 @@ impl LogSet {
             return Ok(());
         }
         let known = machine.with_known(&state.shares);
-        let mut whole = known.clone();
-        whole.effects.extend_from_slice(&state.effects);
-        let exact = known.mechanism.exact_step();
-        let exact = exact.map(|step| ClosedLoop::exact(&whole, step));
-        let exact = exact.transpose()?.map(ClosedLoop::without_noise);
-        let sensed = match known.senses_exactly() {
-            true => None,
-            false => Some(ClosedLoop::new(&whole)?),
+        let with_effects = |mut axis: Axis| {
+            axis.effects.extend_from_slice(&state.effects);
+            axis
         };
-        if exact.is_none() && sensed.is_none() {
-            return Ok(());
-        }
-        let one = |log: &Prepared| -> Result<(Trace, [Defect; 2]), ReplayError> {
-            let fast = log.answer.run(&known, &state.effects, None)?;
-            let mut of_mesh = vec![vec![0.0; log.log.len()]; self.channels.len()];
-            let Some(replay) = log.answer.replay() else {
-                return Ok((fast, [of_mesh.clone(), of_mesh]));
+        let exact = known.mechanism.exact_step();
+        let exact = exact.map(|step| ClosedLoop::exact(&with_effects(known.clone()), step));
+        let exact = exact.transpose()?.map(ClosedLoop::without_noise);
+        let one = |log: &Prepared| -> Result<[Defect; 2], ReplayError> {
+            let nothing = || vec![vec![0.0; log.log.len()]; self.channels.len()];
+            let (Some(replay), shown) = (log.answer.replay(), as_shown(&known, log)?) else {
+                return Ok([nothing(), nothing()]);
             };
-            if let Some(exact) = &exact {
-                let exact = replay.follow(exact, |_| ())?;
-                of_mesh = self.differences(&exact, &fast);
+            if exact.is_none() && shown.is_none() {
+                return Ok([nothing(), nothing()]);
             }
-            let mut of_both = of_mesh.clone();
-            if let Some(sensed) = &sensed {
-                let window = ((WINDOW / log.period) as usize).max(1);
-                let mean = self.of_sensors(replay, sensed, &fast, window)?;
-                for (sum, mean) in of_both.iter_mut().zip(mean) {
-                    sum.iter_mut()
-                        .zip(mean)
-                        .for_each(|(sum, mean)| *sum += mean);
-                }
-            }
-            Ok((fast, [of_mesh, of_both]))
+            let fast = log.answer.run(&known, &state.effects, None)?;
+            let of_mesh = match &exact {
+                Some(exact) => self.differences(&replay.follow(exact, |_| ())?, &fast),
+                None => nothing(),
+            };
+            let Some(Shown { axis, is_read }) = shown else {
+                return Ok([of_mesh, nothing()]);
+            };
+            let sensed = self.of_sensors(replay, &with_effects(axis), &fast, window(log))?;
+            let misfit = |sensed: &Defect| misfit(&self.residual(log, &fast, [&of_mesh, sensed]));
+            let is_kept = is_read || misfit(&sensed) < misfit(&nothing()) - BY_CHANCE;
+            Ok([of_mesh, if is_kept { sensed } else { nothing() }])
         };
         let found: Vec<_> = (self.logs.par_iter().map(one)).collect::<Result<_, _>>()?;
-        let (traces, defects): (Vec<Trace>, Vec<_>) = found.into_iter().unzip();
-        // The sensors of the file may be others than those of the log, or have more noise, which blurs their steps.
-        let [of_mesh, of_both] = [0, 1].map(|which| {
-            let mut set = self.clone();
-            for (log, defects) in set.logs.iter_mut().zip(&defects) {
-                log.defect.clone_from(&defects[which]);
-            }
-            let rest = set.rest(&traces);
-            rest.iter().map(|log| misfit(log)).collect::<Vec<f64>>()
-        });
-        for (l, (log, [mesh, both])) in self.logs.iter_mut().zip(defects).enumerate() {
-            let is_likelier = of_both[l] < of_mesh[l] - BY_CHANCE;
-            log.defect = if is_likelier { both } else { mesh };
+        for (log, found) in self.logs.iter_mut().zip(found) {
+            [log.defect, log.sensed] = found;
         }
         Ok(())
     }
 
-    /// What the sensors of the file change on average, by channel.
+    /// What steps and noise of the sensors change on average, by channel.
     fn of_sensors(
         &self,
         replay: &Replay,
-        sensed: &ClosedLoop,
+        sensed: &Axis,
         quiet: &Trace,
         window: usize,
-    ) -> Result<Vec<Vec<f64>>, ReplayError> {
+    ) -> Result<Defect, ReplayError> {
+        let sensed = ClosedLoop::new(sensed)?;
         let run = |seed: u64| -> Result<_, ReplayError> {
             let noisy = replay.follow(&sensed.clone().with_seed(seed), |_| ())?;
             Ok(self.differences(&noisy, quiet))

@@ -6,6 +6,7 @@ mod inexact;
 mod prepare;
 mod set;
 mod share;
+mod shown;
 mod slack;
 mod state;
 mod stored;

@@ -54,6 +54,7 @@ impl LogSet {
                 shown_effort: held_effort(&replay),
                 answer: Answer::Replay(Box::new(replay)),
                 defect: vec![vec![0.0; log.len()]; channels.len()],
+                sensed: vec![vec![0.0; log.len()]; channels.len()],
                 hum: vec![Vec::new(); channels.len()],
                 measured: channels
                     .iter()
@@ -114,6 +115,7 @@ impl LogSet {
                 doubtful: None,
                 shown_effort: None,
                 defect: vec![vec![0.0; log.len()]; channels.len()],
+                sensed: vec![vec![0.0; log.len()]; channels.len()],
                 hum: vec![Vec::new(); channels.len()],
                 log,
                 answer: Answer::Balance(Box::new(balance)),
@@ -158,6 +160,7 @@ impl LogSet {
             set = set.ticked(|l| self.logs[l].answer.replay().map(Replay::ticks));
             for (log, before) in set.logs.iter_mut().zip(&self.logs) {
                 log.defect.clone_from(&before.defect);
+                log.sensed.clone_from(&before.sensed);
             }
         } else {
             set.correct_defects(machine, &State::initial(machine))?;

@@ -34,6 +34,8 @@ pub struct Prepared {
     pub shown_effort: Option<f64>,
     /// What the fast simulation is short of beside the slow one, by channel.
     pub defect: Vec<Vec<f64>>,
+    /// What steps and noise of the sensors change on average, by channel.
+    pub sensed: Vec<Vec<f64>>,
     /// Hum that is taken out of it, by channel; empty if there is none.
     pub hum: Vec<Vec<f64>>,
 }
@@ -150,11 +152,23 @@ impl LogSet {
     /// Measured minus simulated, per log and channel; 0 if nothing was measured, so that
     /// what was put there has no weight.
     pub fn rest(&self, traces: &[Trace]) -> Rest {
-        let channel = |log: &Prepared, trace: &Trace, c: usize| {
-            let simulated = self.simulated(trace, c);
-            let pairs = log.measured[c].iter().zip(simulated);
+        let pairs = self.logs.iter().zip(traces);
+        pairs
+            .map(|(log, trace)| self.residual(log, trace, [&log.defect, &log.sensed]))
+            .collect()
+    }
+
+    /// The same of one log by channel, with these as what its simulation leaves out.
+    pub(super) fn residual(
+        &self,
+        log: &Prepared,
+        trace: &Trace,
+        [defect, sensed]: [&[Vec<f64>]; 2],
+    ) -> Vec<Vec<f64>> {
+        let channel = |c: usize| {
+            let pairs = log.measured[c].iter().zip(self.simulated(trace, c));
             let mut rest: Vec<f64> = pairs.map(|(m, s)| m - s).collect();
-            for known in [&log.defect[c], &log.hum[c]] {
+            for known in [&defect[c], &sensed[c], &log.hum[c]] {
                 rest.iter_mut().zip(known).for_each(|(r, k)| *r -= k);
             }
             for instants in log.log.missing(self.channels[c]) {
@@ -162,12 +176,7 @@ impl LogSet {
             }
             rest
         };
-        let one = |(log, trace): (&Prepared, &Trace)| {
-            (0..self.channels.len())
-                .map(|c| channel(log, trace, c))
-                .collect()
-        };
-        self.logs.iter().zip(traces).map(one).collect()
+        (0..self.channels.len()).map(channel).collect()
     }
 
     /// Difference of two simulations divided by `by`, as amplitudes.

@@ -16,8 +16,8 @@ const TRIED: [f64; 5] = [-1.0, -0.5, 0.0, 0.5, 1.0];
 /// Halvings of the step beside the best of them: to 1/64 of what the bristles can hold.
 const HALVINGS: usize = 5;
 
-/// Fall of minus twice the log-likelihood ([`misfit`]) below which a log is taken to begin, and to be sensed, as it was taken
-/// before: more than one number brings by chance.
+/// Fall of minus twice the log-likelihood ([`misfit`]) below which a log is taken to begin, and its loops to tick, as before:
+/// more than one number brings by chance.
 pub(super) const BY_CHANCE: f64 = 25.0;
 
 /// Steps by which a held effort is moved to see where the log is more likely, the way downhill

@@ -59,9 +59,15 @@ impl<'a> Remainder<'a> {
             .fit_above
             .filter(|(_, times)| is_more_than_noise(*times, compared.above))
             .filter(|_| is_bare && named.own_form.is_none());
-        let lack = lack(machine, found, MATERIAL * largest)?;
+        let channels = gap.channels.iter().enumerate();
+        let mut small = channels.map(|(c, gap)| gap.after <= set.immaterial(machine, c));
+        let is_immaterial = is_bare && small.all(|is_small| is_small);
+        let lack = match is_immaterial {
+            true => None,
+            false => lack(machine, found, MATERIAL * largest)?,
+        };
         // Beside effects that leave next to nothing, a residual without a curve is small change.
-        let excess = match lack.is_some() || is_nearly_none {
+        let excess = match lack.is_some() || is_nearly_none || is_immaterial {
             true => None,
             false => above_noise(compared)?,
         };
@@ -81,11 +87,12 @@ impl<'a> Remainder<'a> {
         let unknown = lack.or_else(|| following.map(in_frequency));
         let as_coloured = compared.left.loop_noise.is_some() && unknown.is_none();
         let is_noise = gap.is_at_floor() || coloured.is_some() || is_slow_of_loop || as_coloured;
-        let is_significant =
-            !(is_noise || is_nearly_none) || unknown.is_some() || more_than_noise.is_some();
+        let is_significant = !is_immaterial
+            && (!(is_noise || is_nearly_none) || unknown.is_some() || more_than_noise.is_some());
         // What takes away little of a residual that is noise was fitted to noise.
-        let is_of_noise =
-            |refused: &&Refused| as_coloured || is_slow_of_loop && refused.effects.is_empty();
+        let is_of_noise = |refused: &&Refused| {
+            is_immaterial || as_coloured || is_slow_of_loop && refused.effects.is_empty()
+        };
         let refused = found.refused.as_ref();
         let refused = refused.filter(|refused| !(is_bare && is_of_noise(refused)));
         Ok(Self {

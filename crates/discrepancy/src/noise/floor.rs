@@ -106,7 +106,10 @@ pub(crate) fn floors(
 ) -> Result<Vec<Floor>, ReplayError> {
     let axis = at_state(machine, state);
     if set.is_balanced() {
-        let channel = |c: usize| of_balances(&axis, set, best, c);
+        let channel = |c: usize| {
+            let noise = of_balances(&axis, set, best, c);
+            noise.beside(set.inexactness(machine, c))
+        };
         return Ok((0..set.channels.len()).map(channel).collect());
     }
     if !shows_noise(&axis, set) {

@@ -40,6 +40,8 @@ pub(super) struct Spectra<'a> {
     pub(super) guess: SensorNoise,
     /// Of what each of them does with that, in the order of [`Sensor::ALL`].
     pub(super) answers: Vec<Powers>,
+    /// Of the position sensors, as the logs show them.
+    steps: [f64; 2],
 }
 
 impl<'a> Spectra<'a> {
@@ -54,6 +56,7 @@ impl<'a> Spectra<'a> {
             observed,
             guess,
             bands,
+            steps: set.steps_shown(axis),
         }
     }
 
@@ -97,6 +100,7 @@ impl<'a> Spectra<'a> {
         let sensors = loop_noise.fold(self.guess, |noise, (s, p)| s.times(noise, p.sqrt()));
         let noise = LogNoise {
             logger: logger.map(|(&name, p)| (name, p.sqrt())).collect(),
+            steps: self.steps,
             ..LogNoise::of_sensors(sensors)
         };
         tracing::debug!(?noise, "noise of the logs");

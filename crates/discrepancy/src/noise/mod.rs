@@ -44,6 +44,8 @@ pub struct LogNoise {
     pub logger: BTreeMap<&'static str, f64>,
     /// What the sensors have beside their white noise.
     colour: Colour,
+    /// Steps of load and motor sensor (m or rad), of which the noise of `sensors` holds the rounding; 0 for none.
+    steps: [f64; 2],
 }
 
 impl LogNoise {
@@ -53,6 +55,7 @@ impl LogNoise {
             sensors,
             logger: BTreeMap::new(),
             colour: Colour::default(),
+            steps: [0.0; 2],
         }
     }
 
@@ -67,8 +70,12 @@ impl LogNoise {
     /// The sensors, for [`axis_sim::ClosedLoop::run_sensed`], read every `period` seconds: the same
     /// seed gives the same noise.
     fn sensed(&self, seed: u64, period: f64) -> impl FnMut(&mut Measured) {
-        let mut white = self.sensors.sensors(seed);
+        let mut own = self.sensors;
+        own.position = beside_steps(own.position, self.steps[0]);
+        own.angle = beside_steps(own.angle, self.steps[1]);
+        let mut white = own.sensors(seed);
         let mut coloured = self.colour.samples(seed, period);
+        let [of_load, of_motor] = self.steps;
         move |seen: &mut Measured| {
             white(seen);
             if let Some([position, angle, speed, q, d]) = coloured.next() {
@@ -78,6 +85,8 @@ impl LogNoise {
                 seen.current.q += q;
                 seen.current.d += d;
             }
+            seen.position = rounded(seen.position, of_load);
+            seen.motor_angle = rounded(seen.motor_angle, of_motor);
         }
     }
 
@@ -92,6 +101,18 @@ impl LogNoise {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
         (0..samples).map(|_| deviation * normal()).collect()
+    }
+}
+
+/// Standard deviation of the noise that a sensor has beside the rounding to its steps.
+fn beside_steps(noise: f64, step: f64) -> f64 {
+    (noise * noise - step * step / 12.0).max(0.0).sqrt()
+}
+
+fn rounded(value: f64, step: f64) -> f64 {
+    match step > 0.0 {
+        true => (value / step).round() * step,
+        false => value,
     }
 }
 
@@ -131,7 +152,13 @@ fn noise_series(
             let own_stream = (stream << 8) + c as u64;
             let logged = noise.logged(name, own_stream, a.len());
             let of_loop = a.iter().zip(b).map(|(a, b)| a - b);
-            of_loop.zip(logged).map(|(n, l)| n + l).collect()
+            let mut run: Vec<f64> = of_loop.zip(logged).map(|(n, l)| n + l).collect();
+            // What they change on average is in the model.
+            if noise.steps != [0.0; 2] {
+                let mean = &set.logs[l].sensed[c];
+                run.iter_mut().zip(mean).for_each(|(n, mean)| *n -= mean);
+            }
+            run
         };
         Ok(set.channels.iter().enumerate().map(channel).collect())
     };
