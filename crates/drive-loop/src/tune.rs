@@ -18,7 +18,7 @@ use crate::gains::Limits;
 use crate::law::LoopGains;
 use crate::moves::{MoveFigures, moves};
 use crate::quick_current::with_quick_current;
-use crate::report::{Found, report};
+use crate::report::{Accepted, Found, report};
 use crate::set::{AxisLoops, LoopSet};
 use crate::tune_settings::TuneSettings;
 use crate::tuning::{MoveCheck, Tuning};
@@ -75,8 +75,14 @@ impl Tuning {
                         file: *file,
                         tuned: *tuned,
                     });
-                    let moves = moves.collect();
-                    let report = report(axis, settings, &file, &found, &limits, &tuned, moves)?;
+                    let accepted = Accepted {
+                        file: &file,
+                        found: &found,
+                        limits: &limits,
+                        tuned: &tuned,
+                        moves: moves.collect(),
+                    };
+                    let report = report(axis, settings, accepted)?;
                     return Ok(Tuned {
                         axis: tuned,
                         report,

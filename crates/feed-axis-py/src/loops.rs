@@ -63,7 +63,6 @@ impl PyAxis {
     /// Gains of the loops within limits of the sensitivity: the axis that has them, and what was
     /// found.
     #[pyo3(signature = (*, sensitivity = 1.6, sensitivity_late = 2.0, ripple = 0.02, positions = None, masses = None, frictions = None, acceleration = true, notch = true, current = false, frf = None))]
-    #[allow(clippy::too_many_arguments, reason = "keywords of a Python function")]
     fn tune<'py>(
         &self,
         py: Python<'py>,

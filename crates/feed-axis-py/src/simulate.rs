@@ -24,7 +24,6 @@ impl PyAxis {
     /// multiples of good ones. With `exact` the axis is simulated the slow, exact way, to stand
     /// for a machine. `excitation` is added to the command, a value for each cycle.
     /// `progress(what, done, total)` is called every 50 ms or so.
-    #[allow(clippy::too_many_arguments, reason = "keywords of a Python function")]
     #[pyo3(signature = (motion, *, compensation = None, noise = 0.0, exact = false, seed = 1, excitation = None, progress = None))]
     fn simulate(
         &self,

@@ -162,8 +162,8 @@ pub use operating::{OperatingCurrents, OperatingLimits, OperatingRegion};
 pub use pi::{AntiWindup, Pi, PiOutput, PiParameters, PiState};
 pub use servo::Servo;
 pub use signals::{
-    Measurement, OperatingPoint, Saturated, ServoCommand, ServoCorrection, ServoReference,
-    ServoState,
+    Measurement, OperatingPoint, Saturated, ServoCommand, ServoCorrection, ServoInput,
+    ServoReference, ServoState,
 };
 
 /// The README's example, run as a test.

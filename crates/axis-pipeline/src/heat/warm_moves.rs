@@ -205,6 +205,7 @@ impl WarmMoves {
     ///
     /// # Errors
     /// As [`Moves::make`], and if the model's heat does not settle.
+    #[expect(clippy::too_many_arguments, reason = "two of the five are closures")]
     pub fn run(
         &self,
         strategy: &mut dyn Strategy,

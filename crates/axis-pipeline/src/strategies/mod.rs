@@ -161,11 +161,11 @@ impl Strategy for EachAlike {
 /// The table of a report that shows a strategy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReportTable {
-    /// Table 16 of the paper: without friction feed-forward.
+    /// Corrections alone.
     WithoutFrictionFeedforward,
-    /// Table 15 of the paper: with friction feed-forward.
+    /// Corrections on top of friction feed-forward.
     WithFrictionFeedforward,
-    /// More strategies, which the paper does not have.
+    /// All others.
     More,
 }
 

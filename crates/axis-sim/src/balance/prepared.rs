@@ -102,8 +102,8 @@ impl Balance {
         let cutoffs: Vec<Cutoff> = cutoffs.collect::<Result<_, ReplayError>>()?;
         let cutoff = cutoffs.into_iter().reduce(Cutoff::lower);
         let cutoff = cutoff.unwrap_or(Cutoff(f64::INFINITY, CutoffReason::Sampling));
-        let one = |(motions, (log, period)): (Vec<Measured>, &(&Log, f64))| {
-            Self::prepared(log, *period, axis, channel, &motions, cutoff)
+        let one = |(motions, logged): (Vec<Measured>, &(&Log, f64))| {
+            Self::prepared(*logged, axis, channel, &motions, cutoff)
         };
         measured.into_iter().zip(logs).map(one).collect()
     }
@@ -117,9 +117,9 @@ impl Balance {
         Ok(all.remove(0))
     }
 
+    /// One log, with its sampling period (s).
     fn prepared(
-        log: &Log,
-        period: f64,
+        (log, period): (&Log, f64),
         axis: &Axis,
         channel: TorqueChannel,
         measured: &[Measured],

@@ -259,6 +259,10 @@ impl ClosedLoop {
     }
 
     /// Sample, correct and control; what comes of it is `cycle`, whatever it was before.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "what a cycle reads and what it writes are borrowed apart, on the hot path"
+    )]
     fn decide(
         &self,
         state: &mut LoopState,
@@ -392,6 +396,7 @@ impl ClosedLoop {
 
     /// As [`ClosedLoop::run_sensed`], from the state that the axis was left in, and
     /// leaves it in the state at the motion's end.
+    #[expect(clippy::too_many_arguments, reason = "as `run_sensed`, with the state")]
     pub fn run_from(
         &self,
         state: &mut LoopState,

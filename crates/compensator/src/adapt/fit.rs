@@ -89,7 +89,8 @@ impl Known<'_> {
             weights = residuals.weights(free.len(), settled == 0);
         }
         let weights = residuals.weights(free.len(), false);
-        let (information, variances, gap) = gained(self, record, &at, &residuals, &weights, &free);
+        let (information, variances, gap) =
+            gained(self, record, &at, (&residuals, &weights), &free);
         Fit {
             estimate: std::array::from_fn(|i| at[i]),
             information,

@@ -17,8 +17,7 @@ pub(super) fn gained(
     known: &Known<'_>,
     record: &Record,
     at: &Column,
-    residuals: &Residuals,
-    weights: &Weights,
+    (residuals, weights): (&Residuals, &Weights),
     free: &[usize],
 ) -> (Information, Theta, Option<[f64; 2]>) {
     // What the record says of the parameters once the nuisances are integrated out.
