@@ -109,7 +109,7 @@ fn best(axis: &Axis, settings: &TuneSettings, limits: &Limits) -> Result<Found, 
         notch: None,
         evaluations: 0,
     };
-    let has_notch = found.loops.model.passage().command[1].is_some();
+    let has_notch = found.loops.model.signal_path().command[1].is_some();
     if settings.notch && !has_notch {
         let mut least = found.loops.figures(&gains).objective - WORTH;
         // The first mode is what the speed loop damps; a notch there takes that from it.
@@ -157,7 +157,7 @@ fn set_notch(axis: &mut Axis, frequency: f64) -> Result<bool, LoopError> {
     };
     retune(axis, &gains)?;
     let after = axis.control.cascade(travel, axis.period);
-    Ok(after.is_some_and(|after| after.passage.command[1].is_some()))
+    Ok(after.is_some_and(|after| after.signal_path.command[1].is_some()))
 }
 
 fn retune(axis: &mut Axis, gains: &CascadeGains) -> Result<(), LoopError> {

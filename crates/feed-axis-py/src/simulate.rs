@@ -1,8 +1,8 @@
 //! An axis along a motion.
 
 use axis_sim::{ClosedLoop, Cycle, Measured};
+use axis_sim::{MACHINE_STEP, NoiseLevels};
 use compensator::{Compensator, NoCompensation};
-use discover_matrix::hidden::{MACHINE_STEP, Noise};
 use pyo3::prelude::*;
 
 use crate::arrays;
@@ -50,7 +50,7 @@ impl PyAxis {
                 Some(law) => law.make(&motion)?,
                 None => Box::new(NoCompensation),
             };
-            let mut sensors = Noise::good(&axis).scaled(noise).sensors(seed);
+            let mut sensors = NoiseLevels::good(&axis).scaled(noise).sensors(seed);
             let sense = |seen: &mut Measured| {
                 if noise > 0.0 {
                     sensors(seen);

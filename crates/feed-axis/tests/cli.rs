@@ -94,7 +94,7 @@ fn a_bad_axis_file_is_refused_with_its_line() {
             "table_mass_kg",
         ),
         ("dc_link_v = 540", "dc_link_v = nan", "dc_link_v"),
-        ("[motor]", "[motor]\nwarp = 9", "warp"),
+        ("[actuator]", "[actuator]\nwarp = 9", "warp"),
     ] {
         let content = good.replace(from, to);
         std::fs::write(&bad, &content).unwrap();
@@ -128,9 +128,9 @@ fn a_key_set_wrongly_is_named_by_its_option() {
             assert_eq!(output.status.code(), Some(2), "{output:?}");
             text(&output)
         };
-        let message = with(&["control.frequency_khz=5", "drive.table_mass_kg=-515"]);
+        let message = with(&["control.frequency_khz=5", "mechanism.table_mass_kg=-515"]);
         for part in [
-            "--set drive.table_mass_kg=-515: `drive.",
+            "--set mechanism.table_mass_kg=-515: `mechanism.",
             "table_mass_kg` is -515; valid: a number from",
         ] {
             assert!(message.contains(part), "{message}");

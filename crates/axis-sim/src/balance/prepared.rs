@@ -129,11 +129,11 @@ impl Balance {
         let motions = motions(axis, measured, period, motion_cutoff);
         let every = ((1.0 / (RATE * cutoff * period)).floor() as usize).max(1);
         let compared_period = every as f64 * period;
-        let told = DEVIATIONS * standing(axis, measured, motion_cutoff);
+        let seen = DEVIATIONS * speed_noise(axis, measured, motion_cutoff);
         let standstill = axis
             .balance
             .slowest
-            .map_or(told, |slowest| slowest.max(told));
+            .map_or(seen, |slowest| slowest.max(seen));
         let (mut moving, all) = moving(&motions.load, period, cutoff, every, standstill);
         let names = measured.iter().map(|m| m.name).chain([channel.name]);
         let holes = names.flat_map(|name| log.missing(name).iter().cloned());
@@ -345,7 +345,7 @@ fn inertia(axis: &Axis, whose: Whose) -> f64 {
 }
 
 /// Noise of the load's speed, RMS.
-fn standing(axis: &Axis, measured: &[Measured], cutoff: f64) -> f64 {
+fn speed_noise(axis: &Axis, measured: &[Measured], cutoff: f64) -> f64 {
     let one = &measured[0];
     match one.whose {
         Whose::Load => one.noise.speed(cutoff),

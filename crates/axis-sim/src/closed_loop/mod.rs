@@ -23,6 +23,9 @@ use crate::plant::{AdvanceError, Assembly, Plant, Running, Start};
 use crate::sensor::Sensing;
 use crate::work::{MOST_STEPS, check_period, cycles_of, substeps};
 
+/// Greatest internal step of a run that stands for a machine ([`ClosedLoop::exact`]), s.
+pub const MACHINE_STEP: f64 = 2e-5;
+
 /// The closed loop of an axis, prepared once for any number of runs.
 #[derive(Clone, Debug)]
 pub struct ClosedLoop {

@@ -3,7 +3,7 @@
 use std::vec::Vec;
 
 use super::coordinates::GAP;
-use super::information::{gained, inverse};
+use super::information::{information_from, inverse};
 use super::known::{ALL, Column, Information, Known};
 use super::parameter::{COUNT, Theta};
 use super::record::Record;
@@ -90,7 +90,7 @@ impl Known<'_> {
         }
         let weights = residuals.weights(free.len(), false);
         let (information, variances, gap) =
-            gained(self, record, &at, (&residuals, &weights), &free);
+            information_from(self, record, &at, (&residuals, &weights), &free);
         Fit {
             estimate: std::array::from_fn(|i| at[i]),
             information,

@@ -62,7 +62,7 @@ pub fn inputs(options: &Options, until: Instant) -> Result<u64> {
     }
     progress.finish_and_clear();
     summary(&kinds, &sum, start.elapsed())?;
-    told(&faults)?;
+    list(&faults)?;
     Ok(sum.counts.iter().map(|[.., faults]| faults).sum())
 }
 
@@ -206,7 +206,7 @@ fn summary(kinds: &[Box<dyn Kind>], sum: &Sum, took: Duration) -> Result<()> {
 }
 
 /// Tells the faults, those that read alike once.
-fn told(folder: &Path) -> Result<()> {
+fn list(folder: &Path) -> Result<()> {
     let mut alike: BTreeMap<String, (u64, String)> = BTreeMap::new();
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let text = std::fs::read_to_string(entry.path().join("fault.txt")).unwrap_or_default();
