@@ -137,13 +137,13 @@ fn a_key_set_wrongly_is_named_by_its_option() {
         }
         assert!(!message.contains(".toml:"), "{message}");
         assert!(!message.contains("frequency_khz=5"), "{message}");
-        let message = with(&["mechanism.table_mass_kg=415"]);
+        let message = with(&["drive.table_mass_kg=415"]);
         assert!(
-            message.contains("--set mechanism.table_mass_kg=415: "),
+            message.contains("--set drive.table_mass_kg=415: "),
             "{message}"
         );
         assert!(
-            message.contains("the file has no table mechanism, its tables are: "),
+            message.contains("the file has no table drive, its tables are: "),
             "{message}"
         );
         let message = with(&["trajectory.2.displacement_mm=far"]);
