@@ -61,13 +61,13 @@ class Machine:
         self.cutoff = WIDEST
 
     def _screw(self, told):
-        screw, drive, dry = told["screw"], told["drive"], told["friction"]
+        screw, motor, dry = told["mechanism"], told["actuator"], told["friction"]
         lead = screw["lead_mm"] * 1e-3
         self.ratio = r = TURN / lead
         rotor = math.pi / 32 * screw["density_kg_per_m3"] * (screw["diameter_mm"] * 1e-3) ** 4 * screw["length_mm"] * 1e-3
-        self.motor_inertia = (drive["motor_inertia_kg_m2"] + drive["torque_sensor_inertia_kg_m2"] + rotor) * r**2
-        self.inertia = drive["table_mass_kg"] + self.motor_inertia
-        self.effort, self.gain = "iq_a", told["motor"]["torque_constant_n_m_per_a"] * r
+        self.motor_inertia = (screw["motor_inertia_kg_m2"] + screw["torque_sensor_inertia_kg_m2"] + rotor) * r**2
+        self.inertia = screw["table_mass_kg"] + self.motor_inertia
+        self.effort, self.gain = "iq_a", motor["torque_constant_n_m_per_a"] * r
         self.position = "position_m"
         rpm = TURN / 60.0
         self.coulomb, self.stiction = dry["coulomb_n_m"] * r, dry["stiction_n_m"] * r
@@ -76,7 +76,7 @@ class Machine:
         self.presliding = dry["coulomb_n_m"] / (dry["bristle_stiffness_n_m_per_rpm_s"] / rpm) / r
         self.gravity, self.hanging = 0.0, 0.0
         self.rotary, self.transmission, self.pole_pitch = False, True, None
-        self.pole_pairs = told["motor"]["pole_pairs"]
-        couplings = drive["motor_coupling_n_m_per_rad"], drive["screw_coupling_n_m_per_rad"]
-        compliance = sum(1.0 / (k * r**2) for k in couplings) + 1.0 / drive["nut_stiffness_n_per_m"]
-        self.cutoff = rigid_below(1.0 / compliance, drive["table_mass_kg"])
+        self.pole_pairs = motor["pole_pairs"]
+        couplings = screw["motor_coupling_n_m_per_rad"], screw["screw_coupling_n_m_per_rad"]
+        compliance = sum(1.0 / (k * r**2) for k in couplings) + 1.0 / screw["nut_stiffness_n_per_m"]
+        self.cutoff = rigid_below(1.0 / compliance, screw["table_mass_kg"])

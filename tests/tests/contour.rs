@@ -6,8 +6,8 @@
 
 use axis_machine::{AxisMotion, Driven, Traced, trace};
 use axis_pipeline::strategies::{NONE, Predictors, STRATEGIES, StrategyKind, named};
+use axis_sim::NoiseLevels;
 use axis_sim::{Axis, ClosedLoop};
-use discover_matrix::hidden::Noise;
 use std::sync::Arc;
 use toolpath::iso230_4::{CircleFigures, NominalCircle, figures};
 use toolpath::named::{CircleTest, Direction};
@@ -90,7 +90,7 @@ fn circle(strategy: &StrategyKind, direction: Direction) -> (f64, Vec<[f64; 2]>)
         let motion = AxisMotion::new(profile.clone(), i, axes[i].stroke.start);
         let predictors = Predictors::of(&axes[i]);
         let law = strategy.compensator(&predictors, Arc::new(motion)).unwrap();
-        Driven::new(&loops[i], law).sensing(Noise::GOOD.sensors(7 + i as u64))
+        Driven::new(&loops[i], law).sensing(NoiseLevels::GOOD.sensors(7 + i as u64))
     });
     let traced: Traced<2> = trace(&profile, driven).unwrap();
     let feet = traced.contour_error_between(circle.counted);

@@ -154,7 +154,7 @@ fn quiet_on(axis: &Axis, motion: &Motion) -> (LogSet, Rest) {
     let (p, mut random) = (Parameters::paper(), Random::new(1, 1));
     let mut samples = Vec::new();
     let (hidden, none) = (Hidden::default(), LoopNoise::default());
-    run(&p, &hidden, motion, &none, &mut random, |s| {
+    run((&p, &hidden), motion, (&none, &mut random), |s| {
         samples.push(*s)
     })
     .unwrap();

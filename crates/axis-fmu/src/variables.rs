@@ -153,7 +153,7 @@ impl Variables {
     /// Time alone.
     pub(crate) fn begin() -> Self {
         let mut all = Self(Vec::new());
-        all.push("time", "", "s", VariableKind::Time, None);
+        all.push(["time", "", "s"], VariableKind::Time, None);
         all
     }
 
@@ -161,13 +161,8 @@ impl Variables {
     pub(crate) fn push_inputs(&mut self, kind: UnitKind, prefix: &str, axis: usize, of: &Axis) {
         for (name, meaning, unit, quantity, start) in inputs(of, kind) {
             let input = VariableKind::Input(Input { axis, quantity });
-            self.push(
-                &format!("{prefix}{name}"),
-                meaning,
-                unit,
-                input,
-                Some(start),
-            );
+            let name = format!("{prefix}{name}");
+            self.push([&name, meaning, unit], input, Some(start));
         }
     }
 
@@ -193,7 +188,7 @@ impl Variables {
         (source, of): (Source, usize),
     ) {
         let kind = VariableKind::Output(Output { source, of });
-        self.push(name, meaning, unit, kind, None);
+        self.push([name, meaning, unit], kind, None);
     }
 
     /// The numbers of an axis file.
@@ -212,7 +207,7 @@ impl Variables {
                 table: parameter.table,
                 key: parameter.key,
             };
-            self.push(&name, &valid, "", kind, Some(value));
+            self.push([&name, &valid, ""], kind, Some(value));
             self.measure(parameter.unit, parameter.limits);
         }
         Ok(())
@@ -223,14 +218,14 @@ impl Variables {
         let kind = VariableKind::MachineNumber(place);
         let [least, most] = number.limits;
         let valid = format!("a number from {least} to {most}");
-        self.push(&number.name, &valid, "", kind, Some(number.value));
+        self.push([&number.name, &valid, ""], kind, Some(number.value));
         self.measure(number.unit, Some(number.limits));
     }
 
     /// The parameter of what outputs show between two samples.
     pub(crate) fn push_exact(&mut self) {
         let own = VariableKind::ExactBetween;
-        self.push(EXACT_BETWEEN, EXACT_MEANING, "", own, Some(0.0));
+        self.push([EXACT_BETWEEN, EXACT_MEANING, ""], own, Some(0.0));
         self.limit([0.0, 1.0]);
     }
 
@@ -246,7 +241,7 @@ impl Variables {
     fn push_own(&mut self, kind: UnitKind, axis: &Axis) {
         if kind == UnitKind::Compensated {
             let own = VariableKind::Compensation;
-            self.push(COMPENSATION, COMPENSATION_MEANING, "", own, Some(1.0));
+            self.push([COMPENSATION, COMPENSATION_MEANING, ""], own, Some(1.0));
             self.limit([0.0, 1.0]);
         }
         if kind != UnitKind::Plant {
@@ -258,7 +253,7 @@ impl Variables {
             Freedom::Rotary => ["unit.start_position_rad", "rad"],
         };
         let own = VariableKind::StartPosition;
-        self.push(name, START_MEANING, unit, own, Some(stroke.start));
+        self.push([name, START_MEANING, unit], own, Some(stroke.start));
         self.limit([stroke.minimum, stroke.maximum]);
     }
 
@@ -269,14 +264,7 @@ impl Variables {
         }
     }
 
-    fn push(
-        &mut self,
-        name: &str,
-        meaning: &str,
-        unit: &str,
-        kind: VariableKind,
-        start: Option<f64>,
-    ) {
+    fn push(&mut self, [name, meaning, unit]: [&str; 3], kind: VariableKind, start: Option<f64>) {
         self.0.push(Variable {
             reference: self.0.len() as u32,
             name: name.to_owned(),

@@ -152,7 +152,7 @@ pub use mapping_error::MappingError;
 pub use plus_minus::{PlusMinus, fixed, never_zero};
 pub use read::read_log;
 pub use read_error::{Place, ReadError, ReadProblem};
-pub use table::OtherUnit;
+pub use table::{Note, OtherUnit};
 pub use unit::{unit_of, unit_suffixes};
 pub use write::{
     CsvSink, LAYOUT, LogFile, LogSink, WriteError, WriteProblem, write, write_csv, write_csv_to,

@@ -29,16 +29,24 @@ pub(crate) struct Vectors {
     pub damaged: usize,
 }
 
+/// What arrays are read from.
+#[derive(Clone, Copy)]
+struct Bytes<'a> {
+    content: &'a [u8],
+    /// Whether the first byte of a number is its greatest.
+    big: bool,
+}
+
 impl Vectors {
     /// Those of an array that stands behind its tag at the start of `content`.
     pub(crate) fn of(content: &[u8], top: Array, big: bool) -> Self {
         let mut vectors = Self::default();
         let name = top.name.clone();
-        vectors.walk(content, top, name, big, 0);
+        vectors.walk(Bytes { content, big }, top, name, 0);
         vectors
     }
 
-    fn walk(&mut self, content: &[u8], array: Array, path: String, big: bool, deep: usize) {
+    fn walk(&mut self, bytes: Bytes<'_>, array: Array, path: String, deep: usize) {
         if deep > MOST_DEEP || self.found.len() > MAX_COLUMNS {
             return;
         }
@@ -55,11 +63,11 @@ impl Vectors {
                     _ => format!("{path}({}).{name}", k + 1),
                 };
                 let all = (0..elements).flat_map(|k| names.iter().map(move |name| (k, name)));
-                self.inside(content, fields, all.map(|(k, n)| path(k, n)), big, deep);
+                self.inside(bytes, fields, all.map(|(k, n)| path(k, n)), deep);
             }
             Content::Cells(fields) => {
                 let all = (0..elements).map(|k| format!("{path}{{{}}}", k + 1));
-                self.inside(content, fields, all, big, deep);
+                self.inside(bytes, fields, all, deep);
             }
         }
     }
@@ -67,12 +75,12 @@ impl Vectors {
     /// The arrays one behind the other, under these paths. A damaged one hides those behind it.
     fn inside(
         &mut self,
-        content: &[u8],
+        bytes: Bytes<'_>,
         fields: Fields,
         paths: impl Iterator<Item = String>,
-        big: bool,
         deep: usize,
     ) {
+        let Bytes { content, big } = bytes;
         let mut at = fields.start;
         for path in paths {
             let Some((start, next)) = inside(content, at, big) else {
@@ -83,7 +91,7 @@ impl Vectors {
             match start.map(|start| array(content, start, big)) {
                 // An empty field has no array in it.
                 None => {}
-                Some(Some(array)) => self.walk(content, array, path, big, deep + 1),
+                Some(Some(array)) => self.walk(bytes, array, path, deep + 1),
                 Some(None) => self.damaged += 1,
             }
         }

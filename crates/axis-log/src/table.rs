@@ -1,6 +1,10 @@
 //! What the file formats have in common: named columns of numbers.
 
+use std::fmt;
+
+use crate::error::clip;
 use crate::read_error::{Place, ReadProblem};
+use crate::unit::unit_of;
 
 /// A file that has been opened: its columns are known, its numbers not yet read.
 pub(crate) trait Table {
@@ -53,25 +57,100 @@ pub(crate) trait Table {
     }
 }
 
-/// What was taken for granted about a file.
+/// What had to be assumed or left out to read a file.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Note {
-    /// Its first row holds numbers, so that its columns have no names.
-    NoNames { columns: usize },
-    /// Lines above the names, which are no part of the table.
-    Titles { lines: Vec<String> },
-    /// Its last row has no line end.
+#[non_exhaustive]
+pub enum Note {
+    /// Its first row holds numbers and is data: the columns have no names.
+    NoNames {
+        /// Its columns, which are called `column 1` and so on.
+        columns: usize,
+    },
+    /// Lines above the names of a text, which were passed over.
+    Titles {
+        /// The lines.
+        lines: Vec<String>,
+    },
+    /// Its last row has no line end; it was taken as a row.
     NoLineEnd,
-    /// Rows that the program left out because nothing changed; values were held.
-    Held { rows: usize },
-    /// A column whose mapping states no unit was read in that which the file states.
-    UnitOfFile { column: String, unit: String },
-    /// A column that a mapping reads in another unit than that which the file states.
+    /// Rows that the program left out because nothing changed; the values were held.
+    Held {
+        /// Rows.
+        rows: usize,
+    },
+    /// A column whose mapping states no unit; it was read in that which the file states.
+    UnitOfFile {
+        /// The column.
+        column: String,
+        /// Its unit.
+        unit: String,
+    },
+    /// A column that its mapping reads in another unit than that which the file states.
     OtherUnit(OtherUnit),
-    /// A column that a mapping names is not there.
-    NoColumn { column: String, there: Vec<String> },
-    /// Rows that were there twice; the second was dropped.
-    Repeated { rows: usize, first: f64 },
+    /// A column that the mapping names and the file has not.
+    NoColumn {
+        /// The column.
+        column: String,
+        /// Those that there are.
+        there: Vec<String>,
+    },
+    /// Rows that were there twice, the same in every column; taken once.
+    Repeated {
+        /// Rows that were dropped.
+        rows: usize,
+        /// Time of the first, s.
+        first: f64,
+    },
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoNames { columns } => write!(
+                f,
+                "its first row holds numbers, so it is data and there are no names; the columns are called \"column 1\" to \"column {columns}\""
+            ),
+            Self::Titles { lines } => write!(
+                f,
+                "{} passed over, as the names for its rows stand below: {}",
+                match lines.len() {
+                    1 => "its first line was".to_owned(),
+                    many => format!("its first {many} lines were"),
+                },
+                clip(&lines.join(" | "))
+            ),
+            Self::NoLineEnd => write!(
+                f,
+                "its last row has no line end; it was taken as it stands, and if the file was cut there, its last number may be too"
+            ),
+            Self::Held { rows } => write!(
+                f,
+                "{rows} rows that the control left out because nothing changed; the last values are held there"
+            ),
+            Self::UnitOfFile { column, unit } => write!(
+                f,
+                "column \"{column}\" is read in {unit}, the unit that the file states, as its mapping states none (unit or factor)"
+            ),
+            Self::OtherUnit(other) => {
+                let [stated, taken] = other.scales;
+                let of_channel = unit_of(&other.channel).unwrap_or_default();
+                let (column, unit) = (&other.column, &other.unit);
+                write!(
+                    f,
+                    "column \"{column}\": the file states {unit} ({stated} {of_channel}), and its mapping takes 1 of it for {taken} {of_channel}; it is read as the mapping says"
+                )
+            }
+            Self::NoColumn { column, there } => write!(
+                f,
+                "the mapping names a column \"{column}\" (source), which is not there; the file has: {}",
+                there.join(", ")
+            ),
+            Self::Repeated { rows, first } => write!(
+                f,
+                "{rows} row(s) occur twice, the first at t = {first:.4} s; each is read once"
+            ),
+        }
+    }
 }
 
 /// A column that a mapping reads in another unit than that which the file states.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use axis_pipeline::strategies::{Continued, LearnedValues, NextMove, SharedMotion, Strategy};
 use axis_sim::Measured;
-use compensator::Homed;
+use compensator::HomedAt;
 use toolpath::FeedProfile;
 use trajectories::Motion;
 
@@ -139,7 +139,7 @@ impl<'a, const D: usize> Laps<'a, D> {
             })
             .collect();
         let lap = self.machine.run(&motions, &mut driven, &mut state)?;
-        let homed = |d: usize, here: Homed| before.as_ref().map_or(here, |all| all[d].homed);
+        let homed = |d: usize, here: HomedAt| before.as_ref().map_or(here, |all| all[d].homed);
         self.left = Some(Left {
             state,
             continued: (lap.left.iter().enumerate())

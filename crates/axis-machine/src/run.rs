@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use axis_sim::{Cycle, LoopState, MOST_STEPS, Measured, RunStopped, Start, Stop, StopReason};
-use compensator::{Compensator, Correction, Homed, Sample};
+use compensator::{Compensator, Correction, HomedAt, Sample};
 use trajectories::{Motion, Setpoint};
 
 use crate::base::BaseState;
@@ -37,7 +37,7 @@ pub struct Lap<const D: usize> {
     /// Displacement of each axis' base at the instants of the positions, m; empty without one.
     pub bases: Vec<Vec<f64>>,
     /// What each compensator added last, and how the drive was homed.
-    pub(crate) left: Vec<(Correction, Homed)>,
+    pub(crate) left: Vec<(Correction, HomedAt)>,
 }
 
 /// A drive on its way.
@@ -291,7 +291,7 @@ impl<const D: usize> CoupledMachine<D> {
             let here = g
                 .record
                 .first()
-                .map_or_else(Homed::default, |sample| Homed {
+                .map_or_else(HomedAt::default, |sample| HomedAt {
                     position: sample.reference.position,
                     effort: sample.last_command,
                 });

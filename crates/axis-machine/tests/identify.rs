@@ -7,14 +7,7 @@ use toolpath::named::Direction;
 const RADIUS: f64 = 0.05;
 
 /// A generator of its own: positions in time, moved by the matrix of a skew machine and by Newton's acceleration from differences.
-fn points(
-    feed: f64,
-    direction: Direction,
-    phi: f64,
-    k: f64,
-    lag: f64,
-    noise: f64,
-) -> Vec<[f64; 2]> {
+fn points(feed: f64, direction: Direction, [phi, k, lag, noise]: [f64; 4]) -> Vec<[f64; 2]> {
     let sign = if direction == Direction::Clockwise {
         -1.0
     } else {
@@ -52,7 +45,7 @@ fn found(
 ) -> Result<axis_machine::CirclesFound, CircleFitError> {
     let all: Vec<Vec<[f64; 2]>> = cases
         .iter()
-        .map(|&(feed, d)| points(feed, d, phi, k, lag, noise))
+        .map(|&(feed, d)| points(feed, d, [phi, k, lag, noise]))
         .collect();
     let circles: Vec<_> = (cases.iter().zip(&all))
         .map(|(&(feed, direction), points)| MeasuredCircle {
@@ -136,7 +129,7 @@ fn one_feed_does_not() {
 
 #[test]
 fn what_cannot_be_is_refused() {
-    let good = points(0.05, Clockwise, 0.0, 0.0, 0.0, 0.0);
+    let good = points(0.05, Clockwise, [0.0; 4]);
     let circle = |feed, radius, points| MeasuredCircle {
         nominal: NominalCircle {
             centre: [0.0; 2],

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use axis_sim::{ClosedLoop, LoopState, Measured, Outcome, Start};
-use compensator::{Compensator, Correction, Homed, LearnedMove, Sample};
+use compensator::{Compensator, Correction, HomedAt, LearnedMove, Sample};
 
 use crate::heat::HeatAhead;
 use crate::strategies::{Continued, LearnedValues, NextMove, SharedMotion, Strategy};
@@ -164,10 +164,12 @@ impl<'a, S: FnMut(&mut Measured)> Moves<'a, S> {
             let end = planned.motion.at(f64::INFINITY).position;
             // An axis that was settled anew was homed there.
             let homed = continued.map(|before| before.homed);
-            let here = samples.first().map_or_else(Homed::default, |first| Homed {
-                position: first.reference.position,
-                effort: first.last_command,
-            });
+            let here = samples
+                .first()
+                .map_or_else(HomedAt::default, |first| HomedAt {
+                    position: first.reference.position,
+                    effort: first.last_command,
+                });
             self.left = Some(Left {
                 state,
                 continued: Continued {

@@ -75,16 +75,16 @@ pub struct Validation {
     pub checks: NumericalChecks,
 }
 
-/// Speeds of the constant-speed runs on the paper's axis, mm/s.
+/// Speeds of the constant-speed runs on the reference machine ([`Scales::REFERENCE`]), mm/s.
 const VIBRATION_SPEEDS: [f64; 10] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 20.0];
 
 /// Speeds of the constant-speed runs, mm/s (mrad/s), in proportion to the stroke.
 pub fn vibration_speeds(axis: &Axis) -> [f64; 10] {
-    let length = Scales::of(axis).motion / 0.2;
+    let length = Scales::of(axis).motion / Scales::REFERENCE.motion;
     VIBRATION_SPEEDS.map(|speed| speed * length)
 }
 
-/// Step of the exact method, s: the paper's.
+/// Step of the exact method, s.
 const EXACT_STEP: f64 = 1e-5;
 
 /// Elastic modes shown.

@@ -44,8 +44,8 @@ fn one(closed_loop: &ClosedLoop, thousandths: f64) -> Result<Vibration, Pipeline
     let (axis, speed) = (closed_loop.axis(), 1e-3 * thousandths);
     let unit = ErrorUnit::of(axis);
     let start = axis.stroke.start;
-    // In proportion to the stroke, as on the paper's axis.
-    let length = Scales::of(axis).motion / 0.2;
+    // In proportion to the stroke.
+    let length = Scales::of(axis).motion / Scales::REFERENCE.motion;
     let limits = Limits::new(speed, 0.1 * length, length).map_err(plan)?;
     let motion = SCurve::plan(start, start + 4.0 * speed, &limits).map_err(plan)?;
     let (begin, end) = motion.cruise().unwrap_or((0.0, motion.duration()));

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use axis_log::{Channel, Log};
 use axis_pipeline::heat::{
-    FollowOptions, ModelHeat, SlowLog, SlowLogOptions, Warmth, fit, follow, warm_axis,
+    DutyHeat, FollowOptions, ModelHeat, SlowLog, SlowLogOptions, fit, follow, warm_axis,
 };
 use axis_pipeline::strategies::SharedMotion;
 use axis_sim::Axis;

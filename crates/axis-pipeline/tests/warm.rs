@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use axis_pipeline::heat::{HeatError, ModelHeat, WarmMoves, Warmth};
+use axis_pipeline::heat::{DutyHeat, HeatError, ModelHeat, WarmMoves};
 use axis_pipeline::moves::NamedMotion;
 use axis_pipeline::strategies::{Predictors, STRATEGIES, SharedMotion, named};
 use axis_sim::{Axis, Measured};
@@ -14,7 +14,7 @@ use crate::heat::{axis, program};
 /// The second simulator warms the machine up.
 struct Brute(HeatedScrew, Motion);
 
-impl Warmth for Brute {
+impl DutyHeat for Brute {
     fn until(&mut self, time: f64) -> Result<(), HeatError> {
         let more = time - self.0.time;
         if more > 0.0 {

@@ -77,7 +77,7 @@
 //! // A bad file says where and what.
 //! let bad = text.replace("lead_mm", "lead_inch");
 //! let error = Axis::parse("bad.toml", &bad).unwrap_err().to_string();
-//! assert!(error.contains("screw.lead_inch") && error.contains("lead_mm, lead_m, lead_um"));
+//! assert!(error.contains("mechanism.lead_inch") && error.contains("lead_mm, lead_m, lead_um"));
 //! let bad = text.replace("lead_mm", "laed_mm");
 //! let error = Axis::parse("bad.toml", &bad).unwrap_err().to_string();
 //! assert!(error.contains("did you mean `lead_mm`?"));
@@ -109,6 +109,7 @@ pub mod friction;
 mod late_clock;
 pub mod load;
 pub mod mechanism;
+mod noise_levels;
 mod one_cycle;
 pub mod part;
 mod plan_model;
@@ -137,11 +138,12 @@ pub use channels::{
     excitation_channel, excitation_in, known_channels, needed_position, position_in,
     position_shown, reference_in,
 };
-pub use closed_loop::{ClosedLoop, LoopState};
+pub use closed_loop::{ClosedLoop, LoopState, MACHINE_STEP};
 pub use control_difference::{ControlDifference, control_differences};
 pub use cycle::{Command, Cycle, Measured, Outcome, RunStopped, Stop, StopReason};
 pub use effect_forces::EffectForces;
 pub use error::SetupError;
+pub use noise_levels::{NoiseLevels, NormalNumbers};
 pub use one_cycle::{CycleInput, OneCycle};
 pub use plan_model::{PlanModelError, PositionErrors};
 pub use recorder::{CsvRecorder, FlowRecorder, Recorder};

@@ -42,7 +42,7 @@ pub enum BeamError {
         "nodes {} and {index}, at {before} m and {value} m, are {} m apart: neighbours must be at least {least} m apart ({} of the beam's length); leave one of them out",
         index - 1,
         value - before,
-        crate::spacing::LEAST_SPACING
+        crate::spacing::MIN_SPACING
     )]
     Spacing {
         /// Index of the second node of the first such pair.
@@ -160,7 +160,7 @@ pub enum BeamError {
     },
     /// A stiffness that leaves a motion without spring energy.
     #[error(
-        "the stiffness matrix is not positive definite: {task} needs a spring, a bearing or a hold against every rigid motion, stretch and twist included (BeamModel::hold_everywhere), and no load beyond buckling"
+        "the stiffness matrix is not positive definite: {task} needs a spring, a bearing or a hold against every rigid motion, stretch and twist included (BeamModel::fix_everywhere), and no load beyond buckling"
     )]
     Unsupported {
         /// What was to be computed.

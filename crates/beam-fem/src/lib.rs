@@ -19,9 +19,21 @@
 //! M q̈ + K q = F,     M, K: (6N + 6) × (6N + 6), symmetric, K singular (six rigid motions)
 //! ```
 //!
-//! Row 6i + d of q is degree of freedom d of node i, in the order u, v, w
-//! (m), θx, θy, θz (rad). Units are SI throughout.
+//! Row 6i + d of q is degree of freedom d of node i, in the order u, v, w, θx, θy, θz.
 //!
+//! # Symbols and units
+//! | symbol | what | unit |
+//! |---|---|---|
+//! | x, L | position along the beam, its length | m |
+//! | u, v, w | displacements along x, y, z | m |
+//! | θx, θy, θz | rotations about x, y, z | rad |
+//! | γ | shear angle | rad |
+//! | ρ, E, G | density, Young's and shear modulus | kg/m³, Pa, Pa |
+//! | A, I, κ | area, second moment of area, shear coefficient | m², m⁴, 1 |
+//! | M, K | mass and stiffness matrix: rows of forces (N) and of moments (N·m) | SI |
+//! | q, F | displacements and rotations of all nodes, loads on them | m and rad, N and N·m |
+//!
+//! # Source
 //! The element is that of Appendix A of Liu, Guo, Liu and Niu, *Machines*
 //! 2025, 13(5), 433 (doi 10.3390/machines13050433), its lost signs restored:
 //! see [`element`] for the sources that it was checked against.

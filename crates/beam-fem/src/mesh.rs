@@ -2,7 +2,7 @@
 
 use crate::BeamError;
 use crate::error::positive;
-use crate::spacing::LEAST_SPACING;
+use crate::spacing::MIN_SPACING;
 
 /// Nodes along the beam axis, ascending from 0 at the driven end.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +28,7 @@ impl Mesh {
     /// between is 10¹⁰ times as stiff as the beam, of whose stiffness a sum with it
     /// keeps six digits. No screw has elements as short; nodes that are closer are
     /// one node, computed twice.
-    pub const LEAST_SPACING: f64 = LEAST_SPACING;
+    pub const MIN_SPACING: f64 = MIN_SPACING;
 
     /// `elements` equal elements over `length` metres.
     ///
@@ -47,7 +47,7 @@ impl Mesh {
     ///
     /// # Errors
     /// [`BeamError::Node`] unless they start at 0 and ascend strictly,
-    /// [`BeamError::Spacing`] for two that are closer than [`Mesh::LEAST_SPACING`]
+    /// [`BeamError::Spacing`] for two that are closer than [`Mesh::MIN_SPACING`]
     /// times the length, [`BeamError::Elements`] for fewer than two nodes.
     pub fn from_nodes(nodes: Vec<f64>) -> Result<Self, BeamError> {
         check_elements(nodes.len().saturating_sub(1), 1)?;
@@ -69,7 +69,7 @@ impl Mesh {
     }
 
     fn check_spacing(&self) -> Result<(), BeamError> {
-        let least = Self::LEAST_SPACING * self.length();
+        let least = Self::MIN_SPACING * self.length();
         match self.lengths().position(|length| length < least) {
             None => Ok(()),
             Some(before) => Err(BeamError::Spacing {

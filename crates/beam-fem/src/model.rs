@@ -186,7 +186,7 @@ impl BeamModel {
     ///
     /// # Errors
     /// [`BeamError::Index`] for a node that does not exist.
-    pub fn hold(&mut self, node: usize, dof: Dof) -> Result<(), BeamError> {
+    pub fn fix(&mut self, node: usize, dof: Dof) -> Result<(), BeamError> {
         self.check_node(node)?;
         self.held[dof.at(node)] = true;
         Ok(())
@@ -197,13 +197,11 @@ impl BeamModel {
     /// # Errors
     /// [`BeamError::Index`] for a node that does not exist.
     pub fn clamp(&mut self, node: usize) -> Result<(), BeamError> {
-        Dof::ALL
-            .into_iter()
-            .try_for_each(|dof| self.hold(node, dof))
+        Dof::ALL.into_iter().try_for_each(|dof| self.fix(node, dof))
     }
 
     /// Holds one degree of freedom of every node that there is now.
-    pub fn hold_everywhere(&mut self, dof: Dof) {
+    pub fn fix_everywhere(&mut self, dof: Dof) {
         for node in 0..self.nodes {
             self.held[dof.at(node)] = true;
         }
@@ -211,8 +209,8 @@ impl BeamModel {
 
     /// Leaves lateral vibration alone: holds stretch and twist of every node.
     pub fn lateral_only(&mut self) {
-        self.hold_everywhere(Dof::U);
-        self.hold_everywhere(Dof::ThetaX);
+        self.fix_everywhere(Dof::U);
+        self.fix_everywhere(Dof::ThetaX);
     }
 
     /// Damping of the structure; the last one set holds.

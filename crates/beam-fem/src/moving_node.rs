@@ -35,7 +35,7 @@ impl MovingNode {
     /// # Errors
     /// [`BeamError::Parameter`] for a length that is not above zero, x off
     /// the beam, `min_fraction` above 0.5 or such that the shortest element may be
-    /// under twice [`Mesh::LEAST_SPACING`] of the beam;
+    /// under twice [`Mesh::MIN_SPACING`] of the beam;
     /// [`BeamError::Elements`] for fewer than two elements.
     pub fn at(length: f64, elements: usize, x: f64, min_fraction: f64) -> Result<Self, BeamError> {
         let (node, position) = Self::place(length, elements, x, min_fraction)?;
@@ -66,7 +66,7 @@ impl MovingNode {
             });
         }
         // Twice, as the rounding of the coordinates may take from it.
-        let least = 2.0 * Mesh::LEAST_SPACING * elements as f64;
+        let least = 2.0 * Mesh::MIN_SPACING * elements as f64;
         if !(least..=0.5).contains(&min_fraction) {
             return Err(BeamError::Parameter {
                 field: "min_fraction",

@@ -1,4 +1,4 @@
 //! The least distance of nodes, which the mesh keeps and errors name.
 
-/// [`Mesh::LEAST_SPACING`](crate::Mesh::LEAST_SPACING).
-pub(crate) const LEAST_SPACING: f64 = 1e-10;
+/// [`Mesh::MIN_SPACING`](crate::Mesh::MIN_SPACING).
+pub(crate) const MIN_SPACING: f64 = 1e-10;

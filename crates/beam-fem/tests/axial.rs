@@ -22,8 +22,8 @@ fn column(elements: usize, kappa: f64, radius: f64) -> (BeamModel, f64, f64) {
     let shaft = Shaft::on_mesh(&section, &steel, Mesh::uniform(LENGTH, elements).unwrap());
     let mut model = BeamModel::new(shaft);
     model.lateral_only();
-    model.hold_everywhere(Dof::W);
-    model.hold_everywhere(Dof::ThetaY);
+    model.fix_everywhere(Dof::W);
+    model.fix_everywhere(Dof::ThetaY);
     (model, 206e9 * i, kappa * steel.shear_modulus() * area)
 }
 
@@ -34,7 +34,7 @@ fn slender(elements: usize) -> (BeamModel, f64) {
 
 fn hold(model: &mut BeamModel, held: &[(usize, Dof)]) {
     for (node, dof) in held {
-        model.hold(*node, *dof).unwrap();
+        model.fix(*node, *dof).unwrap();
     }
 }
 
@@ -245,7 +245,7 @@ fn bad_rows_nodes_and_values_are_named() {
     assert!(model.add_damper([0, 42], 1.0).is_err());
     assert!(model.add_bearing(usize::MAX, Bearing::default()).is_err());
     assert!(model.add_bearing(0, Bearing::isotropic(nan, 0.0)).is_err());
-    assert!(model.hold(9, Dof::U).is_err() && model.clamp(9).is_err());
+    assert!(model.fix(9, Dof::U).is_err() && model.clamp(9).is_err());
     assert!(model.set_axial_force(f64::INFINITY).is_err());
     let system = model.matrices().unwrap();
     let held = Receptance {

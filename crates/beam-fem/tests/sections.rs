@@ -148,7 +148,7 @@ fn a_taper_is_the_limit_of_steps() {
         let last = model.nodes() - 1;
         for node in [0, last] {
             for dof in [Dof::V, Dof::W] {
-                model.hold(node, dof).unwrap();
+                model.fix(node, dof).unwrap();
             }
         }
         model.lateral_only();

@@ -26,8 +26,8 @@ fn supported(elements: usize) -> Supported {
     let shaft = Shaft::on_mesh(&section, &steel, Mesh::uniform(length, elements).unwrap());
     let mut model = BeamModel::new(shaft);
     for node in [0, elements] {
-        model.hold(node, Dof::V).unwrap();
-        model.hold(node, Dof::W).unwrap();
+        model.fix(node, Dof::V).unwrap();
+        model.fix(node, Dof::W).unwrap();
     }
     model.lateral_only();
     let i = section.second_moment_y();
@@ -150,8 +150,8 @@ fn body(k: f64, c: f64, q: f64) -> (BeamModel, f64) {
         model.add_bearing(node, bearing).unwrap();
         model.add_mass(node, LumpedMass::point(5.0)).unwrap();
     }
-    model.hold_everywhere(Dof::ThetaY);
-    model.hold_everywhere(Dof::ThetaZ);
+    model.fix_everywhere(Dof::ThetaY);
+    model.fix_everywhere(Dof::ThetaZ);
     model.lateral_only();
     (model, 10.0 + own)
 }
@@ -237,7 +237,7 @@ fn a_pedestal_is_a_second_mass() {
                 .unwrap();
         }
         for dof in [Dof::U, Dof::ThetaX, Dof::ThetaY, Dof::ThetaZ] {
-            model.hold(base, dof).unwrap();
+            model.fix(base, dof).unwrap();
         }
     }
     let modes = model.matrices().unwrap().natural_modes().unwrap();
@@ -395,8 +395,8 @@ fn damping_within_the_shaft_drives_whirl_above_a_critical_speed() {
     let shaft = Shaft::on_mesh(&section, &steel, Mesh::uniform(1.5, 8).unwrap());
     let mut model = BeamModel::new(shaft);
     for node in [0, 8] {
-        model.hold(node, Dof::V).unwrap();
-        model.hold(node, Dof::W).unwrap();
+        model.fix(node, Dof::V).unwrap();
+        model.fix(node, Dof::W).unwrap();
     }
     model.lateral_only();
     let beta = 1e-4;

@@ -1,6 +1,6 @@
 use crate::backward::Evaluated;
 use crate::error::same_length;
-use crate::forward::forward;
+use crate::forward::{Layers, forward};
 use crate::pack::count;
 use crate::{Activation, AllTansig, Error, NetworkScalar, ScalingRange, Transfers};
 
@@ -154,14 +154,12 @@ impl<T: NetworkScalar, const I: usize, const O: usize, const A: usize, X: Transf
             activations[1 + i] = self.input[i].to_unit(input[i]);
         }
         let mut out = [T::ZERO; O];
-        forward(
-            I,
-            self.hidden,
-            self.transfers,
-            self.weights,
-            activations,
-            &mut out,
-        );
+        let layers = Layers {
+            inputs: I,
+            hidden: self.hidden,
+            weights: self.weights,
+        };
+        forward(&layers, self.transfers, activations, &mut out);
         for (value, range) in out.iter_mut().zip(&self.output) {
             *value = range.from_unit(*value);
         }

@@ -8,21 +8,28 @@
 use crate::pack::{padded, strip_width};
 use crate::{Activation, NetworkScalar, Transfers};
 
+/// What a network is made of, but for its transfer functions.
+pub(crate) struct Layers<'a, T> {
+    pub inputs: usize,
+    /// Neurons of each hidden layer.
+    pub hidden: &'a [usize],
+    /// Packed.
+    pub weights: &'a [T],
+}
+
 /// Fills the hidden part of `activations` and writes the scaled outputs.
 ///
-/// `weights` are packed; `activations[0]` must be 1 and the next `inputs` entries the scaled inputs.
+/// `activations[0]` must be 1 and the next `inputs` entries the scaled inputs.
 #[inline(always)]
 pub(crate) fn forward<T: NetworkScalar>(
-    inputs: usize,
-    hidden: &[usize],
+    layers: &Layers<'_, T>,
     transfers: impl Transfers,
-    weights: &[T],
     activations: &mut [T],
     output: &mut [T],
 ) {
-    let mut seen = 1 + inputs;
-    let mut rest = weights;
-    for (number, &neurons) in hidden.iter().enumerate() {
+    let mut seen = 1 + layers.inputs;
+    let mut rest = layers.weights;
+    for (number, &neurons) in layers.hidden.iter().enumerate() {
         let (layer, later) = rest.split_at(seen * padded(neurons));
         let (input, free) = activations.split_at_mut(seen);
         // With the filling where there is room: what lies behind the layer is

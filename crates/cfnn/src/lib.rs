@@ -29,10 +29,11 @@
 //! The network as Liu, Guo, Liu and Niu use it: Machines 2025, 13(5), 433,
 //! section 4.3, doi 10.3390/machines13050433.
 //!
-//! # Shapes and units
+//! # Symbols, shapes and units
 //!
-//! Inputs and outputs are in the caller's units; inside, all is scaled to
-//! `[-1, 1]` and has none. Tables of samples are row-major, one sample a row.
+//! `x`, `y`: inputs and outputs, in the caller's units; `x̂`, `ŷ`, `t̂`: the same and the targets,
+//! scaled to `[-1, 1]`, without units, as is all inside. `a_l`: what layer `l + 1` sees; `h_l`: outputs of
+//! layer `l`; `J`: derivatives of all residuals by all weights; `μ`: damping of a step `Δ`. Tables of samples are row-major, one sample a row.
 //! The weights are one list: layer after layer, and within a layer row by row
 //! of `W_l`, so the parameter from activation `i` to neuron `j` of a layer of
 //! `H` neurons is the layer's number `i H + j`. Activation 0 is the constant

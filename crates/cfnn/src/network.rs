@@ -2,7 +2,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::error::{all_finite, same_length};
-use crate::forward::forward;
+use crate::forward::{Layers, forward};
 use crate::pack::pack_layers;
 use crate::simd::{Kernel, Vectors};
 use crate::{AllTansig, Architecture, Error, Scaling, Shape, Transfers, packed_len};
@@ -251,14 +251,12 @@ impl Network {
             // Whatever it is, NaN too: nothing looks at it.
             scaled[dropped] = 0.0;
         }
-        forward(
-            shape.inputs,
-            &shape.hidden,
-            transfers,
-            &self.packed,
-            activations,
-            output,
-        );
+        let layers = Layers {
+            inputs: shape.inputs,
+            hidden: &shape.hidden,
+            weights: &self.packed,
+        };
+        forward(&layers, transfers, activations, output);
         for (value, range) in output.iter_mut().zip(self.scaling.output()) {
             *value = range.from_unit(*value);
         }

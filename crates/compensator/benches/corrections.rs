@@ -8,10 +8,10 @@ use std::hint::black_box;
 use axis_scalar::Scalar;
 use cfnn::{FixedNetwork, Network, Scaling, ScalingRange, Shape, packed_len};
 use compensator::{
-    Along, Cascade, Combined, Compensator, Drive, DriveModel, DriveSection, FeedbackDesign,
+    Cascade, Combined, Compensator, Drive, DriveModel, DriveSection, FeedbackDesign,
     FeedbackSettings, FeedforwardDrive, FrictionFeedforward, Mode, MotionEstimator,
     NetworkCompensation, NoCompensation, ObserverGains, Plan, PlanSettings, PlanWithFeedback,
-    Planned, Reference, Sample, Target, TransferFunction, TransferFunctionModel,
+    Planned, Reference, Sample, StrokeSections, Target, TransferFunction, TransferFunctionModel,
 };
 use criterion::{Criterion, criterion_group, criterion_main};
 use foc_pmsm::{MotorParameters, Pmsm};
@@ -127,7 +127,7 @@ fn planned() -> (DriveModel, Vec<Mode>) {
         load_inertia: 515.0,
         friction: LuGre::new(parameters).expect("a law"),
         lever: R,
-        along: Along::new([0.0, 1.5], |_| section).expect("a stroke"),
+        along: StrokeSections::new([0.0, 1.5], |_| section).expect("a stroke"),
         kinematics: compensator::Kinematics::default(),
         drive: Drive::FieldOriented {
             motor,
@@ -146,7 +146,7 @@ fn planned() -> (DriveModel, Vec<Mode>) {
             speed: 0.6474,
             speed_integral: 6.8,
             from_motor: false,
-            passage: compensator::Passage::default(),
+            signal_path: compensator::SignalPath::default(),
         },
         period: T,
     };

@@ -9,8 +9,9 @@
 #![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use compensator::{
-    Along, Cascade, Correction, Drive, DriveModel, DriveSection, FeedbackDesign, FeedbackSettings,
-    Guard, GuardLimits, Mode, PlanSettings, Planner, Reference, Sample, Standstill, Status, Target,
+    Cascade, Correction, Drive, DriveModel, DriveSection, FeedbackDesign, FeedbackSettings, Guard,
+    GuardLimits, Mode, PlanSettings, Planner, Reference, Sample, Standstill, Status,
+    StrokeSections, Target,
 };
 use lugre::{LuGre, Parameters};
 use trajectories::{Limits, Motion, SCurve};
@@ -39,7 +40,7 @@ fn assumed_model() -> Result<DriveModel, Box<dyn std::error::Error>> {
         load_inertia: M,
         friction: LuGre::new(Parameters::LIU_2025)?,
         lever: R,
-        along: Along::new([0.0, 1.5], |_| section)?,
+        along: StrokeSections::new([0.0, 1.5], |_| section)?,
         kinematics: compensator::Kinematics::default(),
         drive: Drive::Lag {
             gain: KT,
@@ -54,7 +55,7 @@ fn assumed_model() -> Result<DriveModel, Box<dyn std::error::Error>> {
             speed: SPEED[0],
             speed_integral: SPEED[1],
             from_motor: false,
-            passage: compensator::Passage::default(),
+            signal_path: compensator::SignalPath::default(),
         },
         period: T,
     })
@@ -72,7 +73,7 @@ fn single(model: &DriveModel) -> Result<DriveModel<f32>, Box<dyn std::error::Err
         load_inertia: M as f32,
         friction: LuGre::new(model.friction.parameters().cast())?,
         lever: R as f32,
-        along: Along::new([0.0, 1.5], |_| section)?,
+        along: StrokeSections::new([0.0, 1.5], |_| section)?,
         kinematics: compensator::Kinematics::default(),
         drive: Drive::Lag {
             gain: KT as f32,
@@ -87,7 +88,7 @@ fn single(model: &DriveModel) -> Result<DriveModel<f32>, Box<dyn std::error::Err
             speed: c.speed as f32,
             speed_integral: c.speed_integral as f32,
             from_motor: false,
-            passage: compensator::Passage::default(),
+            signal_path: compensator::SignalPath::default(),
         },
         period: T as f32,
     })

@@ -271,8 +271,8 @@ impl<T: Scalar, C: Compensator<T>> Compensator<T> for Guarded<C, T> {
         self.guard.restart();
     }
 
-    /// After a correction that was no number the compensator begins anew: what it has
-    /// in its state would be none for ever, and switching on could not take the trip back.
+    /// After a correction that is NaN or infinite the compensator begins anew: its state may hold
+    /// that for good, and switching on again would trip again.
     fn correct(&mut self, sample: &Sample<T>) -> Correction<T> {
         let asked = self.inner.correct(sample);
         let passed = self.guard.pass(&asked, self.inner.surprise());

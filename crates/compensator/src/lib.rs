@@ -1,30 +1,38 @@
 //! Corrections for a servo axis, one trait for the simulator and for a controller.
 //!
+//! # The problem
 //! Once a control cycle, at `t_k`, a controller knows the [`Sample`]: the
 //! reference now and a cycle ahead, the table position, the motor speed, the
 //! currents, and what it commanded last. From these alone a [`Compensator`]
-//! makes a [`Correction`]:
+//! makes a [`Correction`], a `position` and a `command`:
 //!
 //! ```text
-//! ΔS(k) = S_ref(k) − S(k) + position          position loop input (m)
-//! i_q,ref(k) = speed controller + iq          current reference  (A)
+//! e(k) = S_ref(k) − S(k) + position          input of the position controller
+//! u(k) = output of the speed controller + command
 //! ```
 //!
-//! Strategies:
-//!
-//! | strategy | file | correction |
+//! # Symbols and units
+//! | symbol | what | unit |
 //! |---|---|---|
-//! | [`NoCompensation`] | `none.rs` | nothing |
-//! | [`NetworkCompensation`] | `network.rs` | the error that a network predicts for the end of the cycle (Section 4.4 of Liu et al. 2025, doi:10.3390/machines13050433) |
-//! | [`TransferFunction`] | `transfer_function.rs` | the error that a linear model predicts from the reference alone |
-//! | [`FrictionFeedforward`] | `friction.rs` | the current that LuGre friction asks for |
-//! | [`Plan`] | `plan/` | offsets with which the drive follows a motion that is known ahead |
-//! | [`PlanWithFeedback`] | `feedback/` | the plan, and an observer and state feedback in place of the drive's loops |
-//! | [`DriveTermsFeedforward`] | `drive_terms/` | what an ordinary drive makes of its own constants, pulses and tables |
-//! | [`Combined`] | `combined.rs` | the sum of two |
+//! | S, S_ref | position of the load, its reference | m, or rad if it turns |
+//! | u | command to the actuator: q current, torque, force or voltage | A, N·m, N or V |
+//! | `motor_angle`, `motor_speed` | of the motor | rad, rad/s |
+//! | `period` | of the control cycle | s |
+//!
+//! # Strategies
+//! | strategy | correction |
+//! |---|---|
+//! | [`NoCompensation`] | nothing |
+//! | [`NetworkCompensation`] | the error that a network predicts for the end of the cycle (Section 4.4 of Liu et al. 2025, doi:10.3390/machines13050433) |
+//! | [`TransferFunction`] | the error that a linear model predicts from the reference alone |
+//! | [`FrictionFeedforward`] | the command for LuGre friction along the reference |
+//! | [`Plan`] | offsets with which the drive follows a motion that is known ahead |
+//! | [`PlanWithFeedback`] | the plan, and an observer and state feedback in place of the drive's loops |
+//! | [`DriveTermsFeedforward`] | what an ordinary drive makes of its own constants, pulses and tables |
+//! | [`Combined`] | the sum of two |
 //!
 //! Speed and acceleration, which the network asks for, come from the
-//! [`MotionEstimator`]: motor speed, set right by the scale. The linear model
+//! [`MotionEstimator`]: motor speed, corrected by the scale. The linear model
 //! comes from `identify_transfer_function` (feature `identify`, least squares), the gains of a
 //! [`Feedback`] from `FeedbackDesign` (feature `design`, Riccati equations).
 //!
@@ -38,10 +46,13 @@
 //! [`cfnn::Network`] are in `f64`, and `cast` takes their results over.
 //!
 //! Everything but identification, adaptation and design works without `std`, and nothing is
-//! allocated in a cycle. The crate knows nothing of the simulator: no inner
-//! state of a plant comes in. It does not read or write files, plan motions,
-//! or train networks.
+//! allocated in a cycle.
 //!
+//! # What it knows nothing of
+//! The simulator: no inner state of a plant comes in. Files, the planning of motions, the training
+//! of networks.
+//!
+//! # Example
 //! ```
 //! use compensator::{
 //!     Combined, Compensator, FeedforwardDrive, FrictionFeedforward, NoCompensation, Sample,
@@ -82,6 +93,7 @@ mod error;
 mod estimator;
 mod feedback;
 mod friction;
+mod gaussian;
 mod guard;
 #[cfg(feature = "identify")]
 mod identify;
@@ -90,11 +102,11 @@ mod learning;
 mod model;
 mod network;
 mod none;
-mod passage;
 mod plan;
 mod remainder;
 mod residual;
 mod sample;
+mod signal_path;
 #[cfg(feature = "serde")]
 mod stored;
 mod transfer_function;
@@ -102,7 +114,8 @@ mod warmed;
 
 #[cfg(feature = "identify")]
 pub use adapt::{
-    AdaptError, AdaptParameter, AdaptPrior, Adaptation, Estimated, Learned, PriorSpread, Rest,
+    AdaptError, AdaptParameter, AdaptPrior, Adaptation, Estimated, Learned, PriorSpread,
+    UnexplainedTorque,
 };
 pub use combined::Combined;
 pub use drive_terms::{
@@ -128,11 +141,14 @@ pub use identify::{
 };
 #[cfg(feature = "alloc")]
 pub use learning::{Advice, Gauss, LearnedMove, LearningSettings, Round};
-pub use model::{Along, Cascade, Drive, DriveModel, DriveSection, Kinematics, Mode, SECTIONS};
+pub use model::{
+    Cascade, Drive, DriveModel, DriveSection, Kinematics, Mode, SECTIONS, StrokeSections,
+};
 pub use network::{IncrementModel, NetworkCompensation};
 pub use none::NoCompensation;
-pub use passage::{DriveFilter, Passage};
-pub use plan::{Homed, Plan, PlanSettings, Planned, Planner, PlannerConstants, Standstill, Target};
+pub use plan::{
+    HomedAt, Plan, PlanSettings, Planned, Planner, PlannerConstants, Standstill, Target,
+};
 pub use residual::{HARMONICS, KNOTS, Residual, ResidualAt, ResidualModel};
 #[cfg(feature = "alloc")]
 pub use residual::{NETWORK_INPUTS, ResidualNetwork};
@@ -142,6 +158,7 @@ pub use residual::{
     over_gaussian,
 };
 pub use sample::{Correction, Reference, Sample};
+pub use signal_path::{DriveFilter, SignalPath};
 pub use transfer_function::{MAX_ORDER, TransferFunction, TransferFunctionModel};
 
 /// A correction strategy. It keeps its own estimates; a cycle cannot fail.

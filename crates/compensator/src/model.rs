@@ -15,7 +15,7 @@ use foc_pmsm::{MotorParameters, Pmsm};
 use lugre::{Exponential, LuGre};
 
 use crate::error::{self, require, within};
-use crate::{CompensatorError, Passage};
+use crate::{CompensatorError, SignalPath};
 
 /// Positions at which [`Along`] holds its values.
 pub const SECTIONS: usize = 33;
@@ -35,13 +35,13 @@ pub struct DriveSection<T = f64> {
 
 /// Sections evenly spread over the stroke; linear between them, constant beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Along<T = f64> {
+pub struct StrokeSections<T = f64> {
     least: T,
     per_length: T,
     sections: [DriveSection<T>; SECTIONS],
 }
 
-impl<T: Scalar> Along<T> {
+impl<T: Scalar> StrokeSections<T> {
     /// From the position `least` to `most` (m or rad), the section at each position from
     /// `at`.
     ///
@@ -98,9 +98,9 @@ impl<T: Scalar> Along<T> {
 
     /// Each value rounded to the nearest number of another scalar.
     #[must_use]
-    pub fn cast<U: Scalar>(&self) -> Along<U> {
+    pub fn cast<U: Scalar>(&self) -> StrokeSections<U> {
         let to = |value: T| U::of(value.to_f64());
-        Along {
+        StrokeSections {
             least: to(self.least),
             per_length: to(self.per_length),
             sections: self.sections.map(|s| DriveSection {
@@ -260,7 +260,7 @@ impl<T: Scalar> Cascade<T> {
             speed: to(self.speed),
             speed_integral: to(self.speed_integral),
             from_motor: self.from_motor,
-            passage: self.passage.cast(),
+            signal_path: self.signal_path.cast(),
         }
     }
 }
@@ -282,7 +282,7 @@ pub struct Cascade<T = f64> {
     /// Whether the position comes from the motor, not from the load.
     pub from_motor: bool,
     /// What lies between a correction and the command besides.
-    pub passage: Passage<T>,
+    pub signal_path: SignalPath<T>,
 }
 
 /// How the motor runs ahead of the load without any force: free travel, and an error of the
@@ -381,7 +381,7 @@ pub struct DriveModel<T = f64> {
     /// Travel of the load per unit of that coordinate.
     pub lever: T,
     /// What depends on the position.
-    pub along: Along<T>,
+    pub along: StrokeSections<T>,
     /// How the motor runs ahead without any force.
     pub kinematics: Kinematics<T>,
     /// The actuator.

@@ -2,8 +2,8 @@
 #![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use compensator::{
-    AdaptError, AdaptParameter, AdaptPrior, Adaptation, Along, Cascade, Drive, DriveModel,
-    DriveSection, PriorSpread, Reference, Sample,
+    AdaptError, AdaptParameter, AdaptPrior, Adaptation, Cascade, Drive, DriveModel, DriveSection,
+    PriorSpread, Reference, Sample, StrokeSections,
 };
 use lugre::{LuGre, Parameters};
 
@@ -14,7 +14,7 @@ const STEPS: usize = 100;
 
 /// The axis that is simulated.
 fn truth() -> DriveModel {
-    let along = Along::new([0.0, 1.0], |x| DriveSection {
+    let along = StrokeSections::new([0.0, 1.0], |x| DriveSection {
         compliance: 6e-3 + 1e-3 * x,
         rotating: 6e-3,
         lagging: 0.0,
@@ -48,7 +48,7 @@ fn truth() -> DriveModel {
             speed: 0.65,
             speed_integral: 6.8,
             from_motor: false,
-            passage: compensator::Passage::default(),
+            signal_path: compensator::SignalPath::default(),
         },
         period: PERIOD,
     }

@@ -3,8 +3,8 @@
 #![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use compensator::{
-    Along, Cascade, Compensator, CompensatorError, Correction, Drive, DriveModel, DriveSection,
-    DriveTerms, DriveTermsFeedforward, Reference, ReversalStart, Sample,
+    Cascade, Compensator, CompensatorError, Correction, Drive, DriveModel, DriveSection,
+    DriveTerms, DriveTermsFeedforward, Reference, ReversalStart, Sample, StrokeSections,
 };
 use lugre::{LuGre, Parameters};
 use proptest::prelude::*;
@@ -34,7 +34,7 @@ fn model(from_motor: bool) -> DriveModel {
         })
         .unwrap(),
         lever: R,
-        along: Along::new([0.0, 1.5], section).unwrap(),
+        along: StrokeSections::new([0.0, 1.5], section).unwrap(),
         kinematics: compensator::Kinematics::default(),
         drive: Drive::Lag {
             gain: 1.641,
@@ -49,7 +49,7 @@ fn model(from_motor: bool) -> DriveModel {
             speed: 0.6474,
             speed_integral: 6.801,
             from_motor,
-            passage: compensator::Passage::default(),
+            signal_path: compensator::SignalPath::default(),
         },
         period: T,
     }

@@ -3,9 +3,9 @@
 #![cfg(feature = "design")]
 
 use compensator::{
-    Along, Cascade, Compensator, DesignError, Drive, DriveModel, DriveSection, Feedback,
-    FeedbackDesign, FeedbackSettings, Guard, GuardLimits, Guarded, Mode, Plan, PlanSettings,
-    PlanWithFeedback, Planned, Reference, Sample, Status, Target, Trip, Variation,
+    Cascade, Compensator, DesignError, Drive, DriveModel, DriveSection, Feedback, FeedbackDesign,
+    FeedbackSettings, Guard, GuardLimits, Guarded, Mode, Plan, PlanSettings, PlanWithFeedback,
+    Planned, Reference, Sample, Status, StrokeSections, Target, Trip, Variation,
 };
 use lugre::{LuGre, Parameters};
 use proptest::prelude::*;
@@ -41,7 +41,7 @@ fn axis(position: f64) -> (DriveModel, Vec<Mode>) {
         })
         .expect("a law"),
         lever: R,
-        along: Along::new([0.0, 1.5], |_| section).expect("a stroke"),
+        along: StrokeSections::new([0.0, 1.5], |_| section).expect("a stroke"),
         kinematics: compensator::Kinematics::default(),
         drive: Drive::Lag {
             gain: K,
@@ -56,7 +56,7 @@ fn axis(position: f64) -> (DriveModel, Vec<Mode>) {
             speed: CASCADE[0],
             speed_integral: 6.8,
             from_motor: false,
-            passage: compensator::Passage::default(),
+            signal_path: compensator::SignalPath::default(),
         },
         period: T,
     };

@@ -4,8 +4,8 @@
 #![cfg(feature = "design")]
 
 use compensator::{
-    Along, Cascade, DesignError, Drive, DriveFilter, DriveModel, DriveSection, FeedbackDesign,
-    FeedbackSettings, Mode, Passage, Planned, Reference, Sample, Variation,
+    Cascade, DesignError, Drive, DriveFilter, DriveModel, DriveSection, FeedbackDesign,
+    FeedbackSettings, Mode, Planned, Reference, Sample, SignalPath, StrokeSections, Variation,
 };
 use foc_pmsm::{MotorParameters, Pmsm};
 use lugre::{LuGre, Parameters};
@@ -27,7 +27,7 @@ const SPEED: [f64; 2] = [0.647, 6.8];
 const POSITION: f64 = 29_342.0;
 
 /// A rigid axis that is hardly held by any friction, under that drive.
-fn axis(drive: Drive, passage: Passage) -> (DriveModel, [Mode; 1]) {
+fn axis(drive: Drive, signal_path: SignalPath) -> (DriveModel, [Mode; 1]) {
     let section = DriveSection {
         compliance: 0.0,
         rotating: INERTIA - MASS * R * R,
@@ -46,7 +46,7 @@ fn axis(drive: Drive, passage: Passage) -> (DriveModel, [Mode; 1]) {
         })
         .expect("a law"),
         lever: R,
-        along: Along::new([0.0, 1.5], |_| section).expect("a stroke"),
+        along: StrokeSections::new([0.0, 1.5], |_| section).expect("a stroke"),
         kinematics: compensator::Kinematics::default(),
         drive,
         delay: 0.0,
@@ -58,7 +58,7 @@ fn axis(drive: Drive, passage: Passage) -> (DriveModel, [Mode; 1]) {
             speed: SPEED[0],
             speed_integral: SPEED[1],
             from_motor: false,
-            passage,
+            signal_path,
         },
         period: T,
     };
@@ -152,7 +152,7 @@ impl Filtered {
 /// `cycles`, or until the command comes near its limit, where the loop is no longer linear.
 fn growth(model: &DriveModel, modes: &[Mode], cycles: usize) -> f64 {
     let mut feedback = design(model, modes).feedback();
-    let passage = model.cascade.passage;
+    let signal_path = model.cascade.signal_path;
     let steps = 100;
     let h = T / f64::from(steps);
     let (mut angle, mut speed, mut current) = (1e-12_f64, 0.0_f64, 0.0_f64);
@@ -179,19 +179,19 @@ fn growth(model: &DriveModel, modes: &[Mode], cycles: usize) -> f64 {
         };
         let correction = feedback.correct(&sample, &Planned::default());
         // The drive.
-        if k % passage.position_every as usize == 0 {
+        if k % signal_path.position_every as usize == 0 {
             set_point = POSITION * (correction.position - position);
         }
         let mut seen = speed;
-        if passage.speed_of_position {
+        if signal_path.speed_of_position {
             seen = (position - positions[1]) / (2.0 * T * R);
             positions = [position, positions[0]];
         }
-        let error = set_point - filters[0].pass(passage.speed, seen);
+        let error = set_point - filters[0].pass(signal_path.speed, seen);
         sum += SPEED[1] * T * error;
         command = SPEED[0] * error + sum + correction.command;
-        command = filters[1].pass(passage.command[0], command);
-        command = filters[2].pass(passage.command[1], command);
+        command = filters[1].pass(signal_path.command[0], command);
+        command = filters[2].pass(signal_path.command[1], command);
         // The machine.
         let error = command - current;
         voltages += CURRENT[1] * T * error;
@@ -224,8 +224,8 @@ fn growth(model: &DriveModel, modes: &[Mode], cycles: usize) -> f64 {
 }
 
 /// What margins say of it, against that.
-fn compare(name: &str, drive: Drive, passage: Passage, cycles: usize) -> (f64, f64) {
-    let (model, modes) = axis(drive, passage);
+fn compare(name: &str, drive: Drive, signal_path: SignalPath, cycles: usize) -> (f64, f64) {
+    let (model, modes) = axis(drive, signal_path);
     let margins = design(&model, &modes)
         .margins(&Variation::default())
         .expect("margins");
@@ -239,27 +239,27 @@ fn compare(name: &str, drive: Drive, passage: Passage, cycles: usize) -> (f64, f
     (margins.radius, growth)
 }
 
-fn filtered(speed: Option<DriveFilter>, command: [Option<DriveFilter>; 2]) -> Passage {
-    Passage {
+fn filtered(speed: Option<DriveFilter>, command: [Option<DriveFilter>; 2]) -> SignalPath {
+    SignalPath {
         speed,
         command,
-        ..Passage::default()
+        ..SignalPath::default()
     }
 }
 
 /// Stable loops and unstable ones: what is left of a deviation, or becomes of it.
 #[test]
 fn the_loop_decays_and_grows_as_its_eigenvalues_say() {
-    let every = |position_every| Passage {
+    let every = |position_every| SignalPath {
         position_every,
-        ..Passage::default()
+        ..SignalPath::default()
     };
-    let differences = Passage {
+    let differences = SignalPath {
         speed_of_position: true,
-        ..Passage::default()
+        ..SignalPath::default()
     };
     let cases = [
-        ("nothing besides", at_once(), Passage::default()),
+        ("nothing besides", at_once(), SignalPath::default()),
         (
             "speed low-passed at 400 Hz",
             at_once(),
@@ -294,22 +294,22 @@ fn the_loop_decays_and_grows_as_its_eigenvalues_say() {
         ("every 8", at_once(), every(8)),
         ("every 32", at_once(), every(32)),
         ("speed of the position", at_once(), differences),
-        ("current loop", with_currents(0.0), Passage::default()),
+        ("current loop", with_currents(0.0), SignalPath::default()),
         (
             "current loop, 1 late",
             with_currents(1.0),
-            Passage::default(),
+            SignalPath::default(),
         ),
         (
             "current loop, 0.4 late",
             with_currents(0.4),
-            Passage::default(),
+            SignalPath::default(),
         ),
         ("and every 4", with_currents(1.0), every(4)),
     ];
     let mut unstable = 0;
-    for (name, drive, passage) in cases {
-        let (radius, growth) = compare(name, drive, passage, 1600);
+    for (name, drive, signal_path) in cases {
+        let (radius, growth) = compare(name, drive, signal_path, 1600);
         assert_eq!(radius < 1.0, growth < 1.0, "{name}");
         unstable += u32::from(growth > 1.0);
         // One pair of poles alone, in the end.
@@ -322,32 +322,32 @@ fn the_loop_decays_and_grows_as_its_eigenvalues_say() {
 /// What no margins are computed of is refused, with the key that is in the way.
 #[test]
 fn loops_that_are_not_counted_are_refused() {
-    let none = Passage::default();
+    let none = SignalPath::default();
     let cases = [
         (
-            Passage {
+            SignalPath {
                 speed_every: 2,
                 ..none
             },
             "speed_rate",
         ),
         (
-            Passage {
+            SignalPath {
                 position_every: 33,
                 ..none
             },
             "position_rate",
         ),
         (
-            Passage {
+            SignalPath {
                 other_position: true,
                 ..none
             },
             "blend",
         ),
     ];
-    for (passage, key) in cases {
-        let (model, modes) = axis(at_once(), passage);
+    for (signal_path, key) in cases {
+        let (model, modes) = axis(at_once(), signal_path);
         let error = FeedbackDesign::new(&model, &modes, &FeedbackSettings::default());
         let error = error.expect_err("refused");
         assert!(matches!(error, DesignError::Control(_)), "{error}");
@@ -363,13 +363,13 @@ fn a_filter_that_passes_all_changes_no_margin() {
         b: [1.0, 0.0, 0.0],
         a: [0.0; 2],
     };
-    let margins = |passage| {
-        let (model, modes) = axis(with_currents(1.0), passage);
+    let margins = |signal_path| {
+        let (model, modes) = axis(with_currents(1.0), signal_path);
         design(&model, &modes)
             .margins(&Variation::default())
             .expect("margins")
     };
-    let plain = margins(Passage::default());
+    let plain = margins(SignalPath::default());
     let passed = margins(filtered(Some(all), [Some(all), Some(all)]));
     assert!(
         (plain.sensitivity / passed.sensitivity - 1.0).abs() < 1e-6,

@@ -2,8 +2,8 @@
 #![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use compensator::{
-    Along, Cascade, Drive, DriveModel, DriveSection, Kinematics, PlanSettings, Planned, Planner,
-    Reference, Standstill, Target,
+    Cascade, Drive, DriveModel, DriveSection, Kinematics, PlanSettings, Planned, Planner,
+    Reference, Standstill, StrokeSections, Target,
 };
 use lugre::{LuGre, Parameters};
 use proptest::prelude::*;
@@ -31,7 +31,7 @@ fn model(kinematics: Kinematics) -> DriveModel {
         })
         .expect("a law"),
         lever: 1.0,
-        along: Along::new([-2.0, 2.0], |_| section).expect("a stroke"),
+        along: StrokeSections::new([-2.0, 2.0], |_| section).expect("a stroke"),
         kinematics,
         drive: Drive::Lag {
             gain: 1.0,
@@ -46,7 +46,7 @@ fn model(kinematics: Kinematics) -> DriveModel {
             speed: 0.02,
             speed_integral: 0.4,
             from_motor: false,
-            passage: compensator::Passage::default(),
+            signal_path: compensator::SignalPath::default(),
         },
         period: T,
     }

@@ -1,8 +1,8 @@
 //! Friction that falls as an axis warms up, in the plan.
 
 use compensator::{
-    Along, Cascade, Drive, DriveModel, DriveSection, Kinematics, Passage, PlanSettings, Planned,
-    Planner, Reference, ResidualModel, Standstill, Target,
+    Cascade, Drive, DriveModel, DriveSection, Kinematics, PlanSettings, Planned, Planner,
+    Reference, ResidualModel, SignalPath, Standstill, StrokeSections, Target,
 };
 use lugre::{LuGre, Parameters};
 
@@ -26,7 +26,7 @@ fn model() -> DriveModel {
         })
         .unwrap(),
         lever: 1.0,
-        along: Along::new([-2.0, 2.0], |_| section).unwrap(),
+        along: StrokeSections::new([-2.0, 2.0], |_| section).unwrap(),
         kinematics: Kinematics::default(),
         drive: Drive::Lag {
             gain: 1.0,
@@ -41,7 +41,7 @@ fn model() -> DriveModel {
             speed: 0.02,
             speed_integral: 0.4,
             from_motor: false,
-            passage: Passage::default(),
+            signal_path: SignalPath::default(),
         },
         period: T,
     }

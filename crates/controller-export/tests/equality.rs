@@ -145,7 +145,7 @@ fn plans_of_other_axes_are_those_of_rust() -> Outcome<()> {
             for precision in BOTH {
                 let folder = tempfile::tempdir()?;
                 let path = folder.path();
-                let source = write_one(path, &predictors, &controller, precision, 20_000, false)?;
+                let source = write_one(path, &predictors, &controller, precision, (20_000, false))?;
                 print!("{:<16}{:<8}", axis.name, precision.name());
                 same_bits(path, name, 20_000, &source, &compilers[..1])?;
                 compared += 1;

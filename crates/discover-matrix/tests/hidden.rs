@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 use axis_log::{Channel, Log};
 use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, Effect, Scales};
-use discover_matrix::hidden::{Exercise, Hidden, Noise, OUTSIDE, exercise};
+use discover_matrix::hidden::{Exercise, Hidden, Noise, OUTSIDE, exercise, supposed};
 use discrepancy::{
     Discovery, Fitter, Library, LogSet, Prediction, Settings, State, Verdict, discovery, search,
     search_with,
@@ -69,7 +69,7 @@ fn library_on(motion: &Program) -> Option<Arc<Library>> {
         .position(|&l| over(l, false) == *motion)?;
     let made = LIBRARIES[place].get_or_init(|| {
         let set = logs(&hide(None, 1), motion, false);
-        let noise = Noise::good(&axis()).into();
+        let noise = supposed(Noise::good(&axis()));
         Prediction::new(&axis(), &set, noise).unwrap().library()
     });
     Some(made.clone())

@@ -5,3 +5,4 @@ mod hidden;
 mod machines;
 mod matrix;
 mod matrix2;
+mod noise;

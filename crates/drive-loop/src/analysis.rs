@@ -190,8 +190,8 @@ fn notes(axis: &Axis, loops: &AxisLoops) -> Vec<String> {
                 .to_owned(),
         );
     }
-    let passage = loops.model.passage();
-    if passage.speed_every > 1 || passage.position_every > 1 {
+    let signal_path = loops.model.signal_path();
+    if signal_path.speed_every > 1 || signal_path.position_every > 1 {
         all.push(
             "a loop that is slower than the control enters the margins with its mean delay; stability is checked at the loops' own rates"
                 .to_owned(),

@@ -183,7 +183,7 @@ impl AxisLoops {
 
     /// k_p = J/(a T_Σ K), T_n = a² T_Σ, k_v = 1/(8 a T_Σ).
     fn symmetric_optimum(&self, a: f64) -> LoopGains {
-        let (model, passage) = (&self.model.model, self.model.passage());
+        let (model, signal_path) = (&self.model.model, self.model.signal_path());
         let period = model.period;
         let inner = match &model.drive {
             Drive::Lag { bandwidth, .. } => 1.0 / bandwidth,
@@ -191,7 +191,7 @@ impl AxisLoops {
                 motor.parameters().inductance_q / q[0] + (late + 0.5) * period
             }
         };
-        let speed_period = f64::from(passage.speed_every.max(1)) * period;
+        let speed_period = f64::from(signal_path.speed_every.max(1)) * period;
         let mut small = inner + model.delay + 0.5 * speed_period;
         if self.model.sensing.by_differences {
             small += 0.5 * speed_period;

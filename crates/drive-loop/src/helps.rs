@@ -83,7 +83,7 @@ fn changes(axis: &Axis, settings: &TuneSettings) -> Result<Vec<(String, AxisLoop
             m.sensing.load_from_motor = false;
             m.sensing.load_delay = 0.0;
             m.model.cascade.from_motor = false;
-            m.model.cascade.passage.blend = None;
+            m.model.cascade.signal_path.blend = None;
         })?;
     }
     if own.model.delay + own.model.drive.late() > 0.0 {

@@ -15,7 +15,7 @@
 //! command. What a loop that is slower than the others folds down from above half its own rate is
 //! left out: drives attenuate that by the inertia of the machine.
 
-use compensator::{DriveFilter, Passage};
+use compensator::{DriveFilter, SignalPath};
 
 use crate::plant::{LoopModel, Number, PlantAt, Sensing};
 
@@ -76,27 +76,31 @@ impl LoopAt {
     }
 
     fn through(model: &LoopModel, sensing: &Sensing, plant: &PlantAt) -> Self {
-        let (passage, period) = (model.passage(), model.period());
+        let (signal_path, period) = (model.signal_path(), model.period());
         let z = Number::from_polar(1.0, plant.frequency * period);
         let back = |cycles: f64| Number::from_polar(1.0, -plant.frequency * period * cycles);
-        let every = f64::from(passage.speed_every.max(1));
+        let every = f64::from(signal_path.speed_every.max(1));
         let mean_over = |cycles: u32| mean((0..cycles).map(|k| back(f64::from(k))));
         let differences = (ONE - back(every)) / (every * period);
         let z_speed = back(-every);
         let filter = |filter: &Option<DriveFilter>| filter.map_or(ONE, |f| response(&f, z_speed));
-        let passed = mean_over(passage.speed_every.max(1))
-            * filter(&passage.command[0])
-            * filter(&passage.command[1]);
-        let aged = mean(ages(passage).into_iter().map(|age| back(f64::from(age))));
-        let speed_filter = filter(&passage.speed);
+        let passed = mean_over(signal_path.speed_every.max(1))
+            * filter(&signal_path.command[0])
+            * filter(&signal_path.command[1]);
+        let aged = mean(
+            ages(signal_path)
+                .into_iter()
+                .map(|age| back(f64::from(age))),
+        );
+        let speed_filter = filter(&signal_path.speed);
 
         let travel = model.model.travel;
         let seen = |command: [Number; 3]| {
             let [angle, speed, load] = shown_at(model, sensing, command, back);
             let motor = angle * travel;
-            let position = match (&passage.blend, model.cascade().from_motor) {
+            let position = match (&signal_path.blend, model.cascade().from_motor) {
                 (Some(blend), _) => {
-                    let slow = response(blend, back(-f64::from(passage.position_every.max(1))));
+                    let slow = response(blend, back(-f64::from(signal_path.position_every.max(1))));
                     motor + slow * (load - motor)
                 }
                 (None, true) => motor,
@@ -190,7 +194,7 @@ fn shown_at(
     [angle, speed, load]: [Number; 3],
     back: impl Fn(f64) -> Number,
 ) -> [Number; 3] {
-    let passage = model.passage();
+    let signal_path = model.signal_path();
     let (travel, period) = (model.model.travel, model.period());
     let mut angle = angle * late_by(sensing.motor_delay, &back);
     let mut load = load * late_by(sensing.load_delay, &back);
@@ -200,8 +204,8 @@ fn shown_at(
     if sensing.load_from_motor {
         load = angle * travel;
     }
-    let every = f64::from(passage.speed_every.max(1));
-    let speed = match (passage.speed_of_position, sensing.by_differences) {
+    let every = f64::from(signal_path.speed_every.max(1));
+    let speed = match (signal_path.speed_of_position, sensing.by_differences) {
         (true, _) => load * (ONE - back(2.0)) / (2.0 * period * travel),
         (false, true) => angle * (ONE - back(every)) / (every * period),
         (false, false) => speed,
@@ -210,8 +214,11 @@ fn shown_at(
 }
 
 /// Ages of the speed set point, in cycles, at the executions of the speed controller.
-pub(crate) fn ages(passage: &Passage) -> Vec<u32> {
-    let (every, position) = (passage.speed_every.max(1), passage.position_every.max(1));
+pub(crate) fn ages(signal_path: &SignalPath) -> Vec<u32> {
+    let (every, position) = (
+        signal_path.speed_every.max(1),
+        signal_path.position_every.max(1),
+    );
     let runs = position / common(every, position);
     (0..runs).map(|k| (k * every) % position).collect()
 }

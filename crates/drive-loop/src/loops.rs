@@ -46,7 +46,7 @@ impl CornerLoop {
     pub fn new(model: &LoopModel, modes: &[Mode], at: &Corner) -> Self {
         let drive = model.drive(modes, at);
         let response = PlantResponse::new(&drive, &model.model);
-        let top = PI / (model.period() * f64::from(model.passage().speed_every.max(1)));
+        let top = PI / (model.period() * f64::from(model.signal_path().speed_every.max(1)));
         let points = grid(&response, top)
             .iter()
             .map(|plant| LoopAt::new(model, plant))

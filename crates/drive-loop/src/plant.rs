@@ -2,7 +2,7 @@
 
 use axis_sim::{Axis, LoadSensor};
 use compensator::{
-    Cascade, DriveModel, DriveSituation, Mode, Passage, SampledDrive, SampledResponse,
+    Cascade, DriveModel, DriveSituation, Mode, SampledDrive, SampledResponse, SignalPath,
 };
 use nalgebra::{Complex, DMatrix, DVector, RowDVector};
 use schemars::JsonSchema;
@@ -137,8 +137,8 @@ impl LoopModel {
         &self.model.cascade
     }
 
-    pub fn passage(&self) -> &Passage {
-        &self.model.cascade.passage
+    pub fn signal_path(&self) -> &SignalPath {
+        &self.model.cascade.signal_path
     }
 
     pub fn period(&self) -> f64 {

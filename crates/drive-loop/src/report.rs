@@ -13,16 +13,31 @@ use crate::tune_settings::TuneSettings;
 use crate::tuned_gains::LoopFigures;
 use crate::tuning::{Limiting, MoveCheck, Tuning};
 
-/// Of an axis as its file says, and of what was found for it.
+/// An axis with gains that keep all limits.
+pub(crate) struct Accepted<'a> {
+    /// Loops of the axis as its file says.
+    pub file: &'a AxisLoops,
+    pub found: &'a Found,
+    pub limits: &'a Limits,
+    /// The axis with these gains.
+    pub tuned: &'a Axis,
+    /// Its simulated moves.
+    pub moves: Vec<MoveCheck>,
+}
+
+/// Of an axis as its file says, and of what was accepted for it.
 pub(crate) fn report(
     axis: &Axis,
     settings: &TuneSettings,
-    file: &AxisLoops,
-    found: &Found,
-    limits: &Limits,
-    tuned: &Axis,
-    moves: Vec<MoveCheck>,
+    accepted: Accepted<'_>,
 ) -> Result<Tuning, LoopError> {
+    let Accepted {
+        file,
+        found,
+        limits,
+        tuned,
+        moves,
+    } = accepted;
     let (loops, gains) = (&found.loops, &found.gains);
     let fed = |axis: &Axis| {
         let cascade = axis.control.cascade(axis.travel_per_radian(), axis.period);

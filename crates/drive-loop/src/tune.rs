@@ -18,7 +18,7 @@ use crate::gains::Limits;
 use crate::law::LoopGains;
 use crate::moves::{MoveFigures, moves};
 use crate::quick_current::with_quick_current;
-use crate::report::{Found, report};
+use crate::report::{Accepted, Found, report};
 use crate::set::{AxisLoops, LoopSet};
 use crate::tune_settings::TuneSettings;
 use crate::tuning::{MoveCheck, Tuning};
@@ -75,8 +75,14 @@ impl Tuning {
                         file: *file,
                         tuned: *tuned,
                     });
-                    let moves = moves.collect();
-                    let report = report(axis, settings, &file, &found, &limits, &tuned, moves)?;
+                    let accepted = Accepted {
+                        file: &file,
+                        found: &found,
+                        limits: &limits,
+                        tuned: &tuned,
+                        moves: moves.collect(),
+                    };
+                    let report = report(axis, settings, accepted)?;
                     return Ok(Tuned {
                         axis: tuned,
                         report,
@@ -103,7 +109,7 @@ fn best(axis: &Axis, settings: &TuneSettings, limits: &Limits) -> Result<Found, 
         notch: None,
         evaluations: 0,
     };
-    let has_notch = found.loops.model.passage().command[1].is_some();
+    let has_notch = found.loops.model.signal_path().command[1].is_some();
     if settings.notch && !has_notch {
         let mut least = found.loops.figures(&gains).objective - WORTH;
         // The first mode is what the speed loop damps; a notch there takes that from it.
@@ -151,7 +157,7 @@ fn set_notch(axis: &mut Axis, frequency: f64) -> Result<bool, LoopError> {
     };
     retune(axis, &gains)?;
     let after = axis.control.cascade(travel, axis.period);
-    Ok(after.is_some_and(|after| after.passage.command[1].is_some()))
+    Ok(after.is_some_and(|after| after.signal_path.command[1].is_some()))
 }
 
 fn retune(axis: &mut Axis, gains: &CascadeGains) -> Result<(), LoopError> {

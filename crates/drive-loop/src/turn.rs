@@ -32,9 +32,12 @@ struct Places {
 pub(crate) fn radius(model: &LoopModel, corner: &CornerLoop, gains: &LoopGains) -> f64 {
     let drive = &corner.drive;
     let n = drive.size() - 1;
-    let passage = model.passage();
+    let signal_path = model.signal_path();
     let sensing = &model.sensing;
-    let (speed_every, position_every) = (passage.speed_every.max(1), passage.position_every.max(1));
+    let (speed_every, position_every) = (
+        signal_path.speed_every.max(1),
+        signal_path.position_every.max(1),
+    );
     let cycles = speed_every / common(speed_every, position_every) * position_every;
     let past = |delay: f64| match delay {
         0.0 => 0,
@@ -91,12 +94,12 @@ pub(crate) fn radius(model: &LoopModel, corner: &CornerLoop, gains: &LoopGains) 
 impl Places {
     /// States that this drive does not have: they would keep what they are for ever.
     fn unused(&self, model: &LoopModel, gains: &LoopGains) -> Vec<usize> {
-        let passage = model.passage();
+        let signal_path = model.signal_path();
         let filters = [
-            passage.speed.is_some(),
-            passage.command[0].is_some(),
-            passage.command[1].is_some(),
-            passage.blend.is_some(),
+            signal_path.speed.is_some(),
+            signal_path.command[0].is_some(),
+            signal_path.command[1].is_some(),
+            signal_path.blend.is_some(),
         ];
         let mut all = Vec::new();
         if gains.integral == 0.0 {
@@ -105,7 +108,7 @@ impl Places {
         if !model.sensing.by_differences {
             all.extend([self.angle, self.speed]);
         }
-        if !passage.speed_of_position {
+        if !signal_path.speed_of_position {
             all.extend(self.positions);
         }
         for (states, is_there) in self.filters.into_iter().zip(filters) {
@@ -135,7 +138,7 @@ impl Cycle<'_> {
     /// simulated loop: sensors, position controller, speed controller, machine.
     fn run(&self, k: u32, mut x: DVector<f64>) -> DVector<f64> {
         let (model, p) = (self.model, self.places);
-        let (passage, sensing) = (model.passage(), &model.sensing);
+        let (signal_path, sensing) = (model.signal_path(), &model.sensing);
         let travel = model.model.travel;
         let machine = x.rows(0, self.n).into_owned();
         let [angle, mut speed, load] = [0, 1, 2].map(|i| self.rows[i].dot(&machine));
@@ -150,11 +153,11 @@ impl Cycle<'_> {
         if sensing.motor_from_load {
             angle = load / travel;
         }
-        let runs = k.is_multiple_of(passage.speed_every.max(1));
+        let runs = k.is_multiple_of(signal_path.speed_every.max(1));
         if sensing.by_differences {
             if runs {
-                x[p.speed] =
-                    (angle - x[p.angle]) / (model.period() * f64::from(passage.speed_every.max(1)));
+                x[p.speed] = (angle - x[p.angle])
+                    / (model.period() * f64::from(signal_path.speed_every.max(1)));
                 x[p.angle] = angle;
             }
             speed = x[p.speed];
@@ -162,16 +165,16 @@ impl Cycle<'_> {
         if sensing.load_from_motor {
             load = angle * travel;
         }
-        if passage.speed_of_position {
+        if signal_path.speed_of_position {
             speed = (load - x[p.positions[1]]) / (2.0 * model.period() * travel);
             x[p.positions[1]] = x[p.positions[0]];
             x[p.positions[0]] = load;
         }
-        if k.is_multiple_of(passage.position_every.max(1)) {
+        if k.is_multiple_of(signal_path.position_every.max(1)) {
             let motor = angle * travel;
-            let position = match (&passage.blend, model.cascade().from_motor) {
+            let position = match (&signal_path.blend, model.cascade().from_motor) {
                 (Some(_), _) => {
-                    let blend = passage.blend.as_ref();
+                    let blend = signal_path.blend.as_ref();
                     motor + filtered(blend, p.filters[3], &mut x, load - motor)
                 }
                 (None, true) => motor,
@@ -180,13 +183,13 @@ impl Cycle<'_> {
             x[p.set_point] = -self.gains.position * position;
         }
         if runs {
-            let seen = filtered(passage.speed.as_ref(), p.filters[0], &mut x, speed);
+            let seen = filtered(signal_path.speed.as_ref(), p.filters[0], &mut x, speed);
             let error = x[p.set_point] - seen;
-            let every = f64::from(passage.speed_every.max(1));
+            let every = f64::from(signal_path.speed_every.max(1));
             let summed = if model.is_pid { x[p.set_point] } else { error };
             x[p.integral] += self.gains.integral * every * model.period() * summed;
             let mut command = self.gains.speed * error + x[p.integral];
-            for (filter, at) in passage.command.iter().zip(&p.filters[1..3]) {
+            for (filter, at) in signal_path.command.iter().zip(&p.filters[1..3]) {
                 command = filtered(filter.as_ref(), *at, &mut x, command);
             }
             x[p.effort] = command;

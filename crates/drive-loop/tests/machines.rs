@@ -124,7 +124,7 @@ impl Machine {
                     delay_cycles: *late,
                     ..Hidden::default()
                 };
-                run_pushed(p, &hidden, motion, (&noise, &mut random), push, |s| {
+                run_pushed((p, &hidden), motion, (&noise, &mut random), push, |s| {
                     all.push(Seen {
                         time: s.time,
                         reference: s.wanted.position,

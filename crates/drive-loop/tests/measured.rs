@@ -181,15 +181,15 @@ fn a_slide_shows_the_machine() {
     assert!(compared.said.is_empty(), "{:?}", compared.said);
 }
 
-/// Friction that sticks is 100 % off and more at a coherence of 1: refused, as is what else looks right.
+/// Friction that sticks is 100 % off and more at a coherence of 1: refused, for tuning too.
 #[test]
-fn what_looks_right_and_is_wrong_is_told() {
+fn a_standing_load_is_refused() {
     let axis = example("liu2025");
-    let of = |slide| measured(&axis, &log(&axis, slide));
-    let still = of(Slide {
+    let slide = Slide {
         speed: 0.0,
         ..Slide::default()
-    });
+    };
+    let still = measured(&axis, &log(&axis, slide));
     let all = errors(&still, [4.0, 40.0]);
     assert!(quantile(&all, 0.5) > 0.5);
     assert!(
@@ -197,7 +197,19 @@ fn what_looks_right_and_is_wrong_is_told() {
         "{:?}",
         still.traps
     );
+    let settings = LoopSet::default().with_measured(&axis, &[still]);
+    let said = settings.unwrap_err().to_string();
+    assert!(
+        said.contains("measured response 1: the load stands"),
+        "{said}"
+    );
+}
 
+/// A slide that is too slow, excitation that is too strong or not there.
+#[test]
+fn an_unsuitable_slide_is_named() {
+    let axis = example("liu2025");
+    let of = |slide| measured(&axis, &log(&axis, slide));
     let slow = of(Slide {
         speed: 0.004,
         ..Slide::default()
@@ -232,7 +244,12 @@ fn what_looks_right_and_is_wrong_is_told() {
         quiet.traps
     );
     assert!(quiet.margins.is_none());
+}
 
+/// Lines that are too coarse, and a log that is too slow.
+#[test]
+fn a_coarse_response_is_named() {
+    let axis = example("liu2025");
     let log = log(&axis, Slide::default());
     let settings = MeasureSettings {
         step_hz: Some(5.0),
@@ -249,18 +266,25 @@ fn what_looks_right_and_is_wrong_is_told() {
     let m = margins(&coarse);
     assert!(m.by_response.value < m.model.unwrap() - 0.05, "{m:?}");
 
-    let belt = example("belt");
-    let long = measured(
-        &belt,
-        &self::log(
-            &belt,
-            Slide {
-                from: 0.2,
-                speed: 0.2,
-                ..Slide::default()
-            },
-        ),
+    let every = log_every(&log, 2);
+    let thin = measured(&axis, &every);
+    assert!(
+        refused(&thin)
+            .iter()
+            .any(|w| w.contains("a log of every control cycle"))
     );
+}
+
+/// A stretch over which modes move, and voltages at their limit.
+#[test]
+fn a_drive_beyond_its_range_is_named() {
+    let belt = example("belt");
+    let slide = Slide {
+        from: 0.2,
+        speed: 0.2,
+        ..Slide::default()
+    };
+    let long = measured(&belt, &log(&belt, slide));
     assert!(
         warned(&long)
             .iter()
@@ -276,28 +300,13 @@ fn what_looks_right_and_is_wrong_is_told() {
         amplitude: 3.0,
         ..Slide::default()
     };
-    let quick = measured(&motor, &self::log(&motor, quick));
+    let quick = measured(&motor, &log(&motor, quick));
     assert!(
         refused(&quick)
             .iter()
             .any(|w| w.contains("the voltage is at its limit of 311.769 V")),
         "{:?}",
         quick.traps
-    );
-
-    let every = log_every(&log, 2);
-    let thin = measured(&axis, &every);
-    assert!(
-        refused(&thin)
-            .iter()
-            .any(|w| w.contains("a log of every control cycle"))
-    );
-
-    let settings = LoopSet::default().with_measured(&axis, &[still]);
-    let said = settings.unwrap_err().to_string();
-    assert!(
-        said.contains("measured response 1: the load stands"),
-        "{said}"
     );
 }
 

@@ -85,16 +85,24 @@ const WINDOW: f64 = 1.0;
 /// Step of the simulation, s: in longer ones the force of a voltage that is held comes late.
 const STEP: f64 = 2e-5;
 
-/// |S| at each tone: what the signal becomes, per what is added to it. `every` is how many cycles
-/// there are between executions of the controller that reads it.
-fn swept(
-    axis: &Axis,
+/// What is added to a sliding axis.
+#[derive(Clone, Copy)]
+struct Added {
     speed: f64,
     place: Place,
     size: f64,
-    tones: &[f64],
+    /// Cycles between executions of the controller that reads it.
     every: usize,
-) -> Vec<f64> {
+}
+
+/// |S| at each tone: what the signal becomes, per what is added to it.
+fn swept(axis: &Axis, added: Added, tones: &[f64]) -> Vec<f64> {
+    let Added {
+        speed,
+        place,
+        size,
+        every,
+    } = added;
     let mut fine = axis.clone();
     fine.simulation.step = fine.simulation.step.min(STEP);
     let closed = ClosedLoop::new(&fine).unwrap().without_noise();
@@ -168,13 +176,19 @@ fn greatest(axis: &Axis, speed: f64, place: Place, size: f64, every: usize) -> f
         all.dedup();
         all
     };
+    let added = Added {
+        speed,
+        place,
+        size,
+        every,
+    };
     let coarse = spread(8.0, 640.0, 24);
-    let heights = swept(axis, speed, place, size, &coarse, every);
+    let heights = swept(axis, added, &coarse);
     let most = (0..coarse.len())
         .max_by(|a, b| heights[*a].total_cmp(&heights[*b]))
         .unwrap();
     let fine = spread(coarse[most] / 1.22, coarse[most] * 1.22, 20);
-    let heights = swept(axis, speed, place, size, &fine, every);
+    let heights = swept(axis, added, &fine);
     let most = (0..fine.len())
         .max_by(|a, b| heights[*a].total_cmp(&heights[*b]))
         .unwrap();
@@ -182,7 +196,7 @@ fn greatest(axis: &Axis, speed: f64, place: Place, size: f64, every: usize) -> f
     let finest: Vec<f64> = (-6..=6)
         .map(|df| (fine[most] + f64::from(df)).max(1.0))
         .collect();
-    let heights = swept(axis, speed, place, size, &finest, every);
+    let heights = swept(axis, added, &finest);
     heights.into_iter().fold(0.0, f64::max)
 }
 

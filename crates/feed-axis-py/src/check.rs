@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use crate::axis::PyAxis;
 use crate::errors::{AxisError, LogError, MotionError, SimulationError, raise};
-use crate::log::{Renamed, each_log, whole_log_of};
+use crate::log::{Given, Renamed, each_log};
 use crate::long::long;
 use crate::loops::plain;
 use crate::motion::AnyMotion;
@@ -61,8 +61,12 @@ impl PyAxis {
         let mut duty = AxisDuty::of(&self.axis).map_err(raise::<AxisError>)?;
         for (i, log) in each_log(logs)?.iter().enumerate() {
             let name = format!("logs[{i}]");
-            let renamed = Renamed::default();
-            let (_, log) = whole_log_of(log, &name, &self.axis, &[], &renamed, &mut Vec::new())?;
+            let given = Given {
+                value: log,
+                name: &name,
+                columns: &Renamed::default(),
+            };
+            let (_, log) = given.whole(&self.axis, &[], &mut Vec::new())?;
             duty.add_log(&self.axis, &log).map_err(raise::<LogError>)?;
         }
         Ok(duty)

@@ -129,20 +129,27 @@ pub(crate) struct PyCompensator {
     running: Mutex<Option<Box<dyn Compensator + Send>>>,
 }
 
+/// What a strategy may need, found elsewhere.
+struct Found<'a> {
+    network: Option<&'a PyNetwork>,
+    transfer: Option<&'a TransferFunctions>,
+    friction: Option<&'a PyLuGre>,
+    correction: Option<&'a MoveCorrection>,
+}
+
 impl PyCompensator {
     /// Name of the strategy, and what it is made of.
     pub(crate) fn parts(&self) -> (&'static str, &Predictors) {
         (self.strategy.kind.name, &self.strategy.predictors)
     }
 
-    fn of(
-        axis: &PyAxis,
-        strategy: &str,
-        network: Option<&PyNetwork>,
-        transfer: Option<&TransferFunctions>,
-        friction: Option<&PyLuGre>,
-        correction: Option<&MoveCorrection>,
-    ) -> PyResult<Self> {
+    fn of(axis: &PyAxis, strategy: &str, found: Found<'_>) -> PyResult<Self> {
+        let Found {
+            network,
+            transfer,
+            friction,
+            correction,
+        } = found;
         let Some(kind) = named(STRATEGIES, strategy) else {
             let names: Vec<_> = STRATEGIES.iter().map(|kind| kind.name).collect();
             return Err(StrategyError::new_err(format!(
@@ -210,9 +217,13 @@ impl Value for PyCompensator {
             Option<PyRef<'py, MoveCorrection>>,
         );
         let (axis, strategy, network, transfer, friction, learned): State<'_> = state.extract()?;
-        let (network, transfer) = (network.as_deref(), transfer.as_deref());
-        let (friction, learned) = (friction.as_deref(), learned.as_deref());
-        Self::of(&axis, &strategy, network, transfer, friction, learned)
+        let found = Found {
+            network: network.as_deref(),
+            transfer: transfer.as_deref(),
+            friction: friction.as_deref(),
+            correction: learned.as_deref(),
+        };
+        Self::of(&axis, &strategy, found)
     }
 }
 
@@ -223,7 +234,6 @@ impl PyCompensator {
     /// The strategy of that name (`feed_axis.STRATEGIES`) for an axis, with what it needs.
     #[new]
     #[pyo3(signature = (axis, strategy, *, network = None, transfer = None, friction = None, correction = None, motion = None))]
-    #[allow(clippy::too_many_arguments, reason = "keywords of a Python function")]
     fn new(
         axis: PyRef<'_, PyAxis>,
         strategy: &str,
@@ -233,9 +243,13 @@ impl PyCompensator {
         correction: Option<PyRef<'_, MoveCorrection>>,
         motion: Option<AnyMotion<'_>>,
     ) -> PyResult<Self> {
-        let (network, transfer) = (network.as_deref(), transfer.as_deref());
-        let (friction, correction) = (friction.as_deref(), correction.as_deref());
-        let made = Self::of(&axis, strategy, network, transfer, friction, correction)?;
+        let found = Found {
+            network: network.as_deref(),
+            transfer: transfer.as_deref(),
+            friction: friction.as_deref(),
+            correction: correction.as_deref(),
+        };
+        let made = Self::of(&axis, strategy, found)?;
         if let Some(motion) = motion {
             made.start(motion)?;
         }

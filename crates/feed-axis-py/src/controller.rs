@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 use crate::arrays::Logs;
 use crate::axis::PyAxis;
 use crate::errors::{AxisError, LogError, SearchError, raise};
-use crate::log::{Renamed, log_of};
+use crate::log::{Given, Renamed, log_of};
 use crate::long::long;
 
 /// Estimates structure, gains and delay of an unknown controller from logs: the axis with that
@@ -57,7 +57,12 @@ pub(crate) fn identify_control<'py>(
         }
         let one = |(i, log)| {
             let name = format!("{kind} {}", i + 1);
-            log_of(log, &name, &machine, &columns, &mut notes)
+            let given = Given {
+                value: log,
+                name: &name,
+                columns: &columns,
+            };
+            log_of(&given, &machine, &mut notes)
         };
         logs.0.iter().enumerate().map(one).collect()
     };

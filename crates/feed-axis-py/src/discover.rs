@@ -13,7 +13,7 @@ use crate::arrays::{Logs, Names};
 use crate::axis::PyAxis;
 use crate::discovery::Discovery;
 use crate::errors::{AxisError, LogError, SearchError, raise};
-use crate::log::{Renamed, log_of};
+use crate::log::{Given, Renamed, log_of};
 use crate::long::long;
 
 /// Finds what an axis' model lacks beside measured logs.
@@ -27,7 +27,6 @@ use crate::long::long;
 /// Ctrl-C raises at once; the search itself ends at its next stage.
 #[pyfunction]
 #[pyo3(signature = (axis, fit, check, *, test = Logs(Vec::new()), accept = Names(Vec::new()), reject = Names(Vec::new()), balance = false, columns = Renamed::default(), progress = None))]
-#[allow(clippy::too_many_arguments)]
 pub(crate) fn discover(
     py: Python<'_>,
     axis: PyRef<'_, PyAxis>,
@@ -61,7 +60,12 @@ pub(crate) fn discover(
     let mut read = |kind: &str, logs: &[Bound<'_, PyAny>]| -> PyResult<Vec<NamedLog>> {
         let one = |(i, log)| {
             let name = format!("{kind} {}", i + 1);
-            log_of(log, &name, &machine, &columns, &mut notes)
+            let given = Given {
+                value: log,
+                name: &name,
+                columns: &columns,
+            };
+            log_of(&given, &machine, &mut notes)
         };
         logs.iter().enumerate().map(one).collect()
     };

@@ -84,7 +84,6 @@ fn write(py: Python<'_>, folder: &Path, name: &str, bytes: &[u8]) -> PyResult<St
 impl PyCompensator {
     /// Writes the strategy for a controller into a folder, and gives the files' paths.
     #[pyo3(signature = (folder, *, target = "c", name = None, precision = "f64", limit_position = None, limit_command = None, limit_surprise = None, patience_s = 0.002, fade_s = 0.1))]
-    #[allow(clippy::too_many_arguments, reason = "keywords of a Python function")]
     fn export(
         &self,
         py: Python<'_>,

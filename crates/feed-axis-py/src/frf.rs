@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use crate::arrays::poles;
 use crate::axis::PyAxis;
 use crate::errors::LoopError;
-use crate::log::{Renamed, each_log, whole_log_by};
+use crate::log::{Given, Renamed, each_log};
 use crate::long::long;
 use crate::loops::plain;
 
@@ -56,9 +56,12 @@ impl PyAxis {
         for (i, log) in each_log(logs)?.iter().enumerate() {
             let name = format!("{name}[{i}]");
             let mut notes = Vec::new();
-            let found = whole_log_by(
-                log, &name, &self.axis, &needed, columns, options, &mut notes,
-            )?;
+            let given = Given {
+                value: log,
+                name: &name,
+                columns,
+            };
+            let found = given.whole_by(&self.axis, &needed, options, &mut notes)?;
             read.push((found, notes));
         }
         let axis = self.axis.clone();

@@ -86,7 +86,6 @@ value!(PyGeneralLuGre, hash);
 impl PyGeneralLuGre {
     #[new]
     #[pyo3(signature = (*, coulomb_n_m, stiction_n_m, stribeck_speed_rad_s, stiffness_n_m_rad, damping_n_m_s_rad, viscous_n_m_s_rad, coulomb_backward_n_m = None, stiction_backward_n_m = None, stribeck_exponent = 2.0, viscous_quadratic_n_m_s2_rad2 = 0.0, viscous_cubic_n_m_s3_rad3 = 0.0))]
-    #[allow(clippy::too_many_arguments, reason = "keywords of a Python function")]
     fn new(
         coulomb_n_m: f64,
         stiction_n_m: f64,

@@ -129,7 +129,6 @@ impl PyAxis {
 
     /// Fits the thermal model to logs of hours: the axis with it, and how well it predicts what was held out.
     #[pyo3(signature = (logs, *, duties = None, air_degc = 20.0, held_out = 0.25, probe_against = "bearing", probe_zero = "begin"))]
-    #[allow(clippy::too_many_arguments, reason = "keywords of a Python function")]
     fn fit_heat<'py>(
         &self,
         py: Python<'py>,
@@ -178,7 +177,6 @@ impl PyAxis {
 
     /// Growth along a log of hours, from its reference alone.
     #[pyo3(signature = (log, *, duties = None, air_degc = 20.0, at_m = None, homed_s = 0.0, probe_each_s = None, probe_against = "bearing", probe_zero = "begin"))]
-    #[allow(clippy::too_many_arguments, reason = "keywords of a Python function")]
     fn predict_growth<'py>(
         &self,
         py: Python<'py>,

@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use axis_pipeline::identification::{IdentificationPlan, identify};
 use axis_pipeline::strategies::TransferModels;
 use axis_pipeline::transfer::{TransferPlan, identify_transfer};
+use axis_sim::NoiseLevels;
 use compensator::TransferFunctionModel;
-use discover_matrix::hidden::Noise;
 use lugre::LuGre;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -93,7 +93,7 @@ impl PyAxis {
                 seed,
                 ..IdentificationPlan::of(&axis)
             };
-            let sensors = Noise::good(&axis).scaled(noise).sensors(seed);
+            let sensors = NoiseLevels::good(&axis).scaled(noise).sensors(seed);
             let count = counting(hook, "friction runs", plan.motions());
             let session = identify(&axis, &axis, &plan, sensors, count);
             let found = session.map_err(raise::<StrategyError>)?.found;

@@ -13,7 +13,7 @@ use pyo3::types::{PyDict, PyTuple, PyType};
 use crate::arrays::Logs;
 use crate::axis::PyAxis;
 use crate::errors::{LogError, StrategyError, of_file, raise, text_of};
-use crate::log::{Renamed, whole_log_of};
+use crate::log::{Given, Renamed};
 use crate::long::long;
 use crate::lugre_law::PyLuGre;
 use crate::value::{Value, value};
@@ -95,7 +95,12 @@ pub(crate) fn learn<'py>(
         .into_iter()
         .chain(position)
         .collect();
-    let (_, log) = whole_log_of(log, "log", axis, &needed, &columns, &mut Vec::new())?;
+    let given = Given {
+        value: log,
+        name: "log",
+        columns: &columns,
+    };
+    let (_, log) = given.whole(axis, &needed, &mut Vec::new())?;
     let mut next = match correction {
         Some(correction) => correction.0.clone(),
         None => StoredCorrection::of(axis, &log).map_err(raise::<StrategyError>)?,
@@ -129,7 +134,12 @@ pub(crate) fn identify<'py>(
     let mut notes = Vec::new();
     let mut read = |(i, log)| {
         let name = format!("log {}", i + 1);
-        whole_log_of(log, &name, &axis, &[], &columns, &mut notes)
+        let given = Given {
+            value: log,
+            name: &name,
+            columns: &columns,
+        };
+        given.whole(&axis, &[], &mut notes)
     };
     let read: Vec<_> = logs
         .0

@@ -20,67 +20,70 @@ use crate::run::Run;
 /// A path is read as the axis' `[log]` maps its columns, several with `+` between them as one log. A pandas or polars frame, a Run, or a
 /// dict of arrays has its columns named as channels, `t_s` among them, and NaN if there is no value.
 pub(crate) fn log_of(
-    given: &Bound<'_, PyAny>,
-    name: &str,
+    given: &Given<'_, '_>,
     axis: &Axis,
-    renamed: &Renamed,
     notes: &mut Vec<String>,
 ) -> PyResult<NamedLog> {
-    let needed = needed_channels(axis);
-    let (name, log) = whole_log_of(given, name, axis, &needed, renamed, notes)?;
+    let (name, log) = given.whole(axis, &needed_channels(axis), notes)?;
     admit(name, log, axis, notes).map_err(raise::<LogError>)
 }
 
-/// The same with channels that it must have, and nothing asked of its motion.
-pub(crate) fn whole_log_of(
-    given: &Bound<'_, PyAny>,
-    name: &str,
-    axis: &Axis,
-    needed: &[&str],
-    renamed: &Renamed,
-    notes: &mut Vec<String>,
-) -> PyResult<(String, Log)> {
-    let exact: Vec<&str> = commanded_channels().collect();
-    let options = Options {
-        exact: &exact,
-        rate_hz: None,
-        most_samples: most_samples(axis),
-    };
-    whole_log_by(given, name, axis, needed, renamed, options, notes)
+/// What was passed as a log.
+pub(crate) struct Given<'a, 'py> {
+    pub value: &'a Bound<'py, PyAny>,
+    /// Its name in messages, unless it is a path.
+    pub name: &'a str,
+    pub columns: &'a Renamed,
 }
 
-/// The same, made ready as `options` say.
-pub(crate) fn whole_log_by(
-    given: &Bound<'_, PyAny>,
-    name: &str,
-    axis: &Axis,
-    needed: &[&str],
-    renamed: &Renamed,
-    options: Options<'_>,
-    notes: &mut Vec<String>,
-) -> PyResult<(String, Log)> {
-    let (name, prepared) = match given.extract::<PathBuf>() {
-        Ok(path) => {
-            let files = files(&path);
-            for file in &files {
-                readable(given.py(), file)?;
+impl Given<'_, '_> {
+    /// The log with channels that it must have, and nothing asked of its motion.
+    pub(crate) fn whole(
+        &self,
+        axis: &Axis,
+        needed: &[&str],
+        notes: &mut Vec<String>,
+    ) -> PyResult<(String, Log)> {
+        let exact: Vec<&str> = commanded_channels().collect();
+        let options = Options {
+            exact: &exact,
+            rate_hz: None,
+            most_samples: most_samples(axis),
+        };
+        self.whole_by(axis, needed, options, notes)
+    }
+
+    /// The same, made ready as `options` say.
+    pub(crate) fn whole_by(
+        &self,
+        axis: &Axis,
+        needed: &[&str],
+        options: Options<'_>,
+        notes: &mut Vec<String>,
+    ) -> PyResult<(String, Log)> {
+        let (name, prepared) = match self.value.extract::<PathBuf>() {
+            Ok(path) => {
+                let files = files(&path);
+                for file in &files {
+                    readable(self.value.py(), file)?;
+                }
+                (
+                    path.display().to_string(),
+                    prepare(&files, &axis.log, needed, options),
+                )
             }
-            (
-                path.display().to_string(),
-                prepare(&files, &axis.log, needed, options),
-            )
-        }
-        Err(_) => {
-            let channels = columns(given, name, renamed)?;
-            (
-                name.to_owned(),
-                prepare_channels(name, channels, needed, options),
-            )
-        }
-    };
-    let prepared = prepared.map_err(raise::<LogError>)?;
-    notes.extend(prepared.done.iter().map(ToString::to_string));
-    Ok((name, prepared.log))
+            Err(_) => {
+                let channels = columns(self.value, self.name, self.columns)?;
+                (
+                    self.name.to_owned(),
+                    prepare_channels(self.name, channels, needed, options),
+                )
+            }
+        };
+        let prepared = prepared.map_err(raise::<LogError>)?;
+        notes.extend(prepared.done.iter().map(ToString::to_string));
+        Ok((name, prepared.log))
+    }
 }
 
 /// A log, or each of a list or tuple of them.

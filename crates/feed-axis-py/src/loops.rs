@@ -63,7 +63,6 @@ impl PyAxis {
     /// Gains of the loops within limits of the sensitivity: the axis that has them, and what was
     /// found.
     #[pyo3(signature = (*, sensitivity = 1.6, sensitivity_late = 2.0, ripple = 0.02, positions = None, masses = None, frictions = None, acceleration = true, notch = true, current = false, frf = None))]
-    #[allow(clippy::too_many_arguments, reason = "keywords of a Python function")]
     fn tune<'py>(
         &self,
         py: Python<'py>,
@@ -111,12 +110,9 @@ impl PyAxis {
     /// This axis with the keys of its file that were set.
     fn with_keys(&self, keys: &[TunedKey]) -> PyResult<Self> {
         let mut table: Table = self.text.parse().map_err(raise::<AxisError>)?;
-        // A file of schema 1 has the current controllers among the others.
-        let has_actuator = table.contains_key("actuator");
         for key in keys {
-            let section = if has_actuator { key.section } else { "control" };
             let section = table
-                .entry(section)
+                .entry(key.section)
                 .or_insert_with(|| Value::Table(Table::new()));
             if let Some(section) = section.as_table_mut() {
                 section.insert(key.key.clone(), Value::Float(key.value));

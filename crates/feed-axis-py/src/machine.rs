@@ -404,7 +404,6 @@ impl PyMachine {
 
     /// Runs the machine along a path.
     #[pyo3(signature = (path, *, feed = 0.05, compensation = None, laps = 1, correct = None, feeds = None, acceleration = 1.0, jerk = 20.0, acceleration_step = 0.0, rapid = 0.25, noise = 0.0, seed = 1, progress = None))]
-    #[allow(clippy::too_many_arguments, reason = "keywords of a Python function")]
     fn contour<'py>(
         &self,
         py: Python<'py>,
@@ -446,7 +445,6 @@ impl PyMachine {
 
     /// Squareness and cross-talk of X and Y from simulated circular tests at several feeds, in both directions.
     #[pyo3(signature = (feeds, *, radius = 0.05, compensation = None, acceleration = 1.0, jerk = 20.0, noise = 0.0, seed = 1, progress = None))]
-    #[allow(clippy::too_many_arguments, reason = "keywords of a Python function")]
     fn identify<'py>(
         &self,
         py: Python<'py>,

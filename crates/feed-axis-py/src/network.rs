@@ -65,7 +65,6 @@ impl PyNetwork {
     /// `progress("train", epoch, epochs)`.
     #[classmethod]
     #[pyo3(signature = (x, y, *, hidden = Layers(vec![10]), epochs = 100, seed = 1, threads = 0, progress = None))]
-    #[allow(clippy::too_many_arguments)]
     fn train<'py>(
         _: &Bound<'py, PyType>,
         py: Python<'py>,
@@ -201,7 +200,6 @@ impl PyNetwork {
 impl PyAxis {
     /// Trains the one-cycle predictor: what the best linear map of the samples leaves.
     #[pyo3(signature = (samples, *, hidden = Layers(vec![34, 19, 8]), epochs = 500, seed = 1, threads = 0, progress = None))]
-    #[allow(clippy::too_many_arguments)]
     fn train(
         &self,
         py: Python<'_>,

@@ -1,8 +1,8 @@
 //! An axis along a motion.
 
 use axis_sim::{ClosedLoop, Cycle, Measured};
+use axis_sim::{MACHINE_STEP, NoiseLevels};
 use compensator::{Compensator, NoCompensation};
-use discover_matrix::hidden::{MACHINE_STEP, Noise};
 use pyo3::prelude::*;
 
 use crate::arrays;
@@ -24,7 +24,6 @@ impl PyAxis {
     /// multiples of good ones. With `exact` the axis is simulated the slow, exact way, to stand
     /// for a machine. `excitation` is added to the command, a value for each cycle.
     /// `progress(what, done, total)` is called every 50 ms or so.
-    #[allow(clippy::too_many_arguments, reason = "keywords of a Python function")]
     #[pyo3(signature = (motion, *, compensation = None, noise = 0.0, exact = false, seed = 1, excitation = None, progress = None))]
     fn simulate(
         &self,
@@ -51,7 +50,7 @@ impl PyAxis {
                 Some(law) => law.make(&motion)?,
                 None => Box::new(NoCompensation),
             };
-            let mut sensors = Noise::good(&axis).scaled(noise).sensors(seed);
+            let mut sensors = NoiseLevels::good(&axis).scaled(noise).sensors(seed);
             let sense = |seen: &mut Measured| {
                 if noise > 0.0 {
                     sensors(seen);

@@ -10,9 +10,9 @@ import pytest
 def test_a_dict_gives_the_same_axis(axis: fa.Axis) -> None:
     values = axis.to_dict()
     assert fa.Axis.from_dict(values).fingerprint == axis.fingerprint
-    values["drive"]["table_mass_kg"] = 600
+    values["mechanism"]["table_mass_kg"] = 600
     assert fa.Axis.from_dict(values).fingerprint != axis.fingerprint
-    values["drive"]["table_mass_kg"] = object()
+    values["mechanism"]["table_mass_kg"] = object()
     with pytest.raises(TypeError, match="table_mass_kg"):
         fa.Axis.from_dict(values)
 

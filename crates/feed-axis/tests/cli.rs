@@ -94,7 +94,7 @@ fn a_bad_axis_file_is_refused_with_its_line() {
             "table_mass_kg",
         ),
         ("dc_link_v = 540", "dc_link_v = nan", "dc_link_v"),
-        ("[motor]", "[motor]\nwarp = 9", "warp"),
+        ("[actuator]", "[actuator]\nwarp = 9", "warp"),
     ] {
         let content = good.replace(from, to);
         std::fs::write(&bad, &content).unwrap();
@@ -128,22 +128,22 @@ fn a_key_set_wrongly_is_named_by_its_option() {
             assert_eq!(output.status.code(), Some(2), "{output:?}");
             text(&output)
         };
-        let message = with(&["control.frequency_khz=5", "drive.table_mass_kg=-515"]);
+        let message = with(&["control.frequency_khz=5", "mechanism.table_mass_kg=-515"]);
         for part in [
-            "--set drive.table_mass_kg=-515: `drive.",
+            "--set mechanism.table_mass_kg=-515: `mechanism.",
             "table_mass_kg` is -515; valid: a number from",
         ] {
             assert!(message.contains(part), "{message}");
         }
         assert!(!message.contains(".toml:"), "{message}");
         assert!(!message.contains("frequency_khz=5"), "{message}");
-        let message = with(&["mechanism.table_mass_kg=415"]);
+        let message = with(&["drive.table_mass_kg=415"]);
         assert!(
-            message.contains("--set mechanism.table_mass_kg=415: "),
+            message.contains("--set drive.table_mass_kg=415: "),
             "{message}"
         );
         assert!(
-            message.contains("the file has no table mechanism, its tables are: "),
+            message.contains("the file has no table drive, its tables are: "),
             "{message}"
         );
         let message = with(&["trajectory.2.displacement_mm=far"]);

@@ -1,5 +1,6 @@
 //! Dynamics of feed drives: what a motor torque makes of the load's motion.
 //!
+//! # The problem
 //! A feed axis is a motor, a transmission that gives way, and a load (table,
 //! carriage, joint) whose position may change the transmission's stiffness:
 //!
@@ -14,7 +15,7 @@
 //! |---|---|---|
 //! | [`FeedDrive`], a ball screw | couplings, the screw's torsion, the nut; with [`AxialSupport`] the screw's length and its bearings | [`ModalStepper`], [`ImplicitStepper`] |
 //! | [`ElasticDrive`], two inertias | one [`Stiffness`]: a constant, [`BeltStrands`], [`ScrewShaft`], or several [`InSeries`] | [`ElasticStepper`] |
-//! | [`ForceCourse, RigidDrive`], one inertia | nothing | [`RigidStepper`] |
+//! | [`RigidDrive`], one inertia, with a [`ForceCourse`] within a step | nothing | [`RigidStepper`] |
 //!
 //! All step through the trait [`TimeStepper`]; the force on the load may depend on
 //! the load's motion at the end of the step (friction), for which [`find_load`]
@@ -56,12 +57,24 @@
 //! compression `δ = r θ − y`: the resonance `√(k (1/m + r²/J))`, the antiresonance
 //! seen from the motor `√(k/m)`.
 //!
-//! # Units
+//! # Symbols and units
+//! | symbol | what | unit |
+//! |---|---|---|
+//! | θ, T, J | angle, torque and inertia of the motor | rad, N·m, kg·m² |
+//! | y, m, x | displacement of the load, its mass, its position from the driven end | m, kg, m |
+//! | F, δ | force of the transmission, its compression | N, m |
+//! | r | travel of the load per radian of the motor, lead / 2π of a screw | m/rad |
+//! | k, β | stiffness; damping as a multiple of it (Rayleigh) | N/m, s |
+//! | K_R1, K_R2, k_n | stiffness of the couplings and of the nut | N·m/rad, N·m/rad, N/m |
+//! | M, C, K, q | mass, damping and stiffness matrix, coordinates | SI, rad and m |
 //!
-//! SI: rad, m, N·m, N, kg·m², kg, s. Where the load turns, read rad for m, N·m for N
-//! and kg·m² for kg of the load.
+//! Where the load turns, read rad for m, N·m for N and kg·m² for kg of the load.
 //!
-//! This crate knows nothing of friction laws, motors, controllers or files.
+//! # What it knows nothing of
+//! Friction laws, motors, controllers, files.
+//!
+//! # Examples
+//! Natural frequencies of a ball screw drive, with the table at 0.6 m:
 //!
 //! ```
 //! use beam_fem::{CrossSection, Material};

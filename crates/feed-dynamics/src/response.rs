@@ -58,8 +58,7 @@ impl FeedDrive {
         &self,
         x: f64,
         coupling: NutCoupling,
-        input: Coordinate,
-        output: Coordinate,
+        [input, output]: [Coordinate; 2],
         angular_frequencies: &[f64],
     ) -> Result<Vec<Complex<f64>>, DriveError> {
         let m = self.matrices(x, coupling)?;

@@ -143,11 +143,10 @@ impl FeedDrive {
         &self,
         x: f64,
         coupling: NutCoupling,
-        input: Coordinate,
-        output: Coordinate,
+        [input, output]: [Coordinate; 2],
         angular_frequencies: &[f64],
     ) -> Result<Vec<Complex<f64>>, DriveError> {
-        let h = self.receptance(x, coupling, input, output, angular_frequencies)?;
+        let h = self.receptance(x, coupling, [input, output], angular_frequencies)?;
         Ok(times(h, angular_frequencies, Quantity::Speed))
     }
 
@@ -160,11 +159,10 @@ impl FeedDrive {
         &self,
         x: f64,
         coupling: NutCoupling,
-        input: Coordinate,
-        output: Coordinate,
+        [input, output]: [Coordinate; 2],
         angular_frequencies: &[f64],
     ) -> Result<Vec<Complex<f64>>, DriveError> {
-        let h = self.receptance(x, coupling, input, output, angular_frequencies)?;
+        let h = self.receptance(x, coupling, [input, output], angular_frequencies)?;
         Ok(times(h, angular_frequencies, Quantity::Acceleration))
     }
 }
@@ -204,11 +202,10 @@ impl ElasticDrive {
     pub fn mobility(
         &self,
         x: f64,
-        input: Side,
-        output: Side,
+        [input, output]: [Side; 2],
         angular_frequencies: &[f64],
     ) -> Result<Vec<Complex<f64>>, DriveError> {
-        let h = self.receptance(x, input, output, angular_frequencies)?;
+        let h = self.receptance(x, [input, output], angular_frequencies)?;
         Ok(times(h, angular_frequencies, Quantity::Speed))
     }
 
@@ -219,11 +216,10 @@ impl ElasticDrive {
     pub fn accelerance(
         &self,
         x: f64,
-        input: Side,
-        output: Side,
+        [input, output]: [Side; 2],
         angular_frequencies: &[f64],
     ) -> Result<Vec<Complex<f64>>, DriveError> {
-        let h = self.receptance(x, input, output, angular_frequencies)?;
+        let h = self.receptance(x, [input, output], angular_frequencies)?;
         Ok(times(h, angular_frequencies, Quantity::Acceleration))
     }
 }

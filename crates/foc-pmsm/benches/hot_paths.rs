@@ -13,7 +13,7 @@ use foc_pmsm::svpwm::{Overmodulation, Svpwm};
 use foc_pmsm::{
     AlphaBeta, Decoupling, DecouplingCurrent, Dq, FieldWeakening, FieldWeakeningParameters,
     FieldWeakeningState, FocError, Measurement, MotorParameters, OperatingLimits, OperatingPoint,
-    Pmsm, Servo, ServoCorrection, ServoGains, ServoLimits, ServoReference, ServoState,
+    Pmsm, Servo, ServoCorrection, ServoGains, ServoInput, ServoLimits, ServoReference, ServoState,
 };
 
 const RPM: f64 = PI / 30.0;
@@ -73,7 +73,14 @@ fn cycles<T: Scalar>(c: &mut Criterion, scalar: &str) -> Result<(), FocError> {
     c.bench_function(&format!("servo cycle, {scalar}"), |b| {
         b.iter(|| {
             let m = measured(current);
-            let command = servo.cycle(&mut state, &m, black_box(&reference), &correction);
+            let command = servo.cycle(
+                &mut state,
+                &ServoInput {
+                    measurement: m,
+                    reference: *black_box(&reference),
+                    correction,
+                },
+            );
             current = command.voltage * T::of(1e-3);
             command
         })
@@ -88,7 +95,15 @@ fn cycles<T: Scalar>(c: &mut Criterion, scalar: &str) -> Result<(), FocError> {
             };
             let m = measured(current);
             let reference = black_box(&reference);
-            let command = servo.cycle_with(&mut state, &m, reference, &correction, &point);
+            let command = servo.cycle_with(
+                &mut state,
+                &ServoInput {
+                    measurement: m,
+                    reference: *reference,
+                    correction,
+                },
+                &point,
+            );
             let most = servo.available_voltage(point.voltage_limit);
             law.update(&mut field, command.voltage, most);
             current = command.voltage * T::of(1e-3);
@@ -139,17 +154,20 @@ fn additions<T: Scalar>(c: &mut Criterion, scalar: &str) -> Result<(), FocError>
     let (motor, servo) = (motor::<T>()?, servo::<T>()?);
     let decoupling = Decoupling::new(motor, DecouplingCurrent::Measured);
     let (mut state, mut current) = (ServoState::default(), Dq::ZERO);
-    let (reference, none) = (ServoReference::default(), ServoCorrection::default());
+    let reference = ServoReference::default();
     let point = OperatingPoint::default();
     c.bench_function(&format!("decoupled cycle, {scalar}"), |b| {
         b.iter(|| {
-            let m = Measurement {
-                position: T::of(1e-6),
-                motor_speed: T::of(0.02),
-                current,
+            let input = ServoInput {
+                measurement: Measurement {
+                    position: T::of(1e-6),
+                    motor_speed: T::of(0.02),
+                    current,
+                },
+                reference: *black_box(&reference),
+                ..ServoInput::default()
             };
-            let r = black_box(&reference);
-            let command = servo.cycle_decoupled(&mut state, &m, r, &none, &point, &decoupling);
+            let command = servo.cycle_decoupled(&mut state, &input, &point, &decoupling);
             current = command.voltage * T::of(1e-3);
             command
         })

@@ -1,7 +1,7 @@
 //! Field-oriented control of synchronous motors, with magnets or without, rotating or
 //! linear.
 //!
-//! # Problem
+//! # The problem
 //! A motor with p pole pairs turns at ω (mechanical, rad/s). Its currents
 //! i = (i_d, i_q) ∈ ℝ² (A) in the rotor's frame answer to the voltage
 //! u = (u_d, u_q) (V):
@@ -25,6 +25,21 @@
 //!
 //! An inverter makes that voltage from its DC link U_dc by switching three
 //! legs, with duty cycles D ∈ \[0, 1\]³ per period.
+//!
+//! # Symbols and units
+//! | symbol | what | unit |
+//! |---|---|---|
+//! | p, R, L_d, L_q | pole pairs, resistance of a phase, inductances along and across the magnets | 1, Ω, H |
+//! | ψ | flux linkage of the magnets, peak | V·s |
+//! | i, u, e | currents, voltages, errors of the currents; amplitudes of a phase | A, V, A |
+//! | T, ω | torque, mechanical speed | N·m, rad/s |
+//! | S, S_ref, ω_ff | position of the load, its reference, speed that is fed forward | m, m, rad/s |
+//! | P_Sw | gain of the position controller | (rad/s)/m |
+//! | P_ωR, I_ωR | gains of the speed controller, whose integral is I_ω | A·s/rad, A/rad |
+//! | P_ix, I_ix | gains of the current controllers, whose integrals are I_x | V/A, V/(A·s) |
+//! | T_s, U_dc | control period, voltage of the DC link | s, V |
+//!
+//! [`ServoGains`] has the gains, [`MotorParameters`] the motor.
 //!
 //! # What is here
 //! - [`Phases`], [`AlphaBeta`], [`Dq`]: Clarke and Park, amplitude-invariant.
@@ -162,8 +177,8 @@ pub use operating::{OperatingCurrents, OperatingLimits, OperatingRegion};
 pub use pi::{AntiWindup, Pi, PiOutput, PiParameters, PiState};
 pub use servo::Servo;
 pub use signals::{
-    Measurement, OperatingPoint, Saturated, ServoCommand, ServoCorrection, ServoReference,
-    ServoState,
+    Measurement, OperatingPoint, Saturated, ServoCommand, ServoCorrection, ServoInput,
+    ServoReference, ServoState,
 };
 
 /// The README's example, run as a test.

@@ -8,10 +8,7 @@ use crate::frames::Dq;
 use crate::gains::{ServoGains, ServoLimits};
 use crate::math::clamp;
 use crate::pi::{AntiWindup, Pi, PiParameters};
-use crate::signals::{
-    Measurement, OperatingPoint, Saturated, ServoCommand, ServoCorrection, ServoReference,
-    ServoState,
-};
+use crate::signals::{OperatingPoint, Saturated, ServoCommand, ServoInput, ServoState};
 use axis_scalar::Scalar;
 
 /// A validated cascade. Immutable; [`ServoState`] is the caller's.
@@ -88,19 +85,13 @@ impl<T: Scalar> Servo<T> {
     /// One control cycle with i_d = 0: the measurements of its start to the
     /// voltage that is held until the next, without delay.
     #[inline]
-    pub fn cycle(
-        &self,
-        state: &mut ServoState<T>,
-        m: &Measurement<T>,
-        r: &ServoReference<T>,
-        c: &ServoCorrection<T>,
-    ) -> ServoCommand<T> {
+    pub fn cycle(&self, state: &mut ServoState<T>, input: &ServoInput<T>) -> ServoCommand<T> {
         let bounds = Bounds {
             id_ref: T::ZERO,
             iq: T::INFINITY,
             voltage: self.limits.voltage,
         };
-        self.cycle_in(state, m, r, c, &bounds, |_| Dq::ZERO)
+        self.cycle_in(state, input, &bounds, |_| Dq::ZERO)
     }
 
     /// As [`Servo::cycle`], with a d current reference and this cycle's
@@ -111,12 +102,10 @@ impl<T: Scalar> Servo<T> {
     pub fn cycle_with(
         &self,
         state: &mut ServoState<T>,
-        m: &Measurement<T>,
-        r: &ServoReference<T>,
-        c: &ServoCorrection<T>,
+        input: &ServoInput<T>,
         point: &OperatingPoint<T>,
     ) -> ServoCommand<T> {
-        self.cycle_at(state, m, r, c, point, |_| Dq::ZERO)
+        self.cycle_at(state, input, point, |_| Dq::ZERO)
     }
 
     /// As [`Servo::cycle_with`], with the voltage of `decoupling` added to the outputs of
@@ -125,14 +114,13 @@ impl<T: Scalar> Servo<T> {
     pub fn cycle_decoupled(
         &self,
         state: &mut ServoState<T>,
-        m: &Measurement<T>,
-        r: &ServoReference<T>,
-        c: &ServoCorrection<T>,
+        input: &ServoInput<T>,
         point: &OperatingPoint<T>,
         decoupling: &Decoupling<T>,
     ) -> ServoCommand<T> {
-        let added = |reference| decoupling.voltage(m.current, reference, m.motor_speed);
-        self.cycle_at(state, m, r, c, point, added)
+        let now = &input.measurement;
+        let added = |reference| decoupling.voltage(now.current, reference, now.motor_speed);
+        self.cycle_at(state, input, point, added)
     }
 
     /// At an operating point, with the voltage that is `added` for a current reference.
@@ -140,14 +128,12 @@ impl<T: Scalar> Servo<T> {
     fn cycle_at(
         &self,
         state: &mut ServoState<T>,
-        m: &Measurement<T>,
-        r: &ServoReference<T>,
-        c: &ServoCorrection<T>,
+        input: &ServoInput<T>,
         point: &OperatingPoint<T>,
         added: impl FnOnce(Dq<T>) -> Dq<T>,
     ) -> ServoCommand<T> {
         let bounds = self.bounds(point);
-        let mut command = self.cycle_in(state, m, r, c, &bounds, added);
+        let mut command = self.cycle_in(state, input, &bounds, added);
         command.saturated.current |= point.id_ref.abs() > self.limits.current;
         command
     }
@@ -168,12 +154,15 @@ impl<T: Scalar> Servo<T> {
     fn cycle_in(
         &self,
         state: &mut ServoState<T>,
-        m: &Measurement<T>,
-        r: &ServoReference<T>,
-        c: &ServoCorrection<T>,
+        input: &ServoInput<T>,
         bounds: &Bounds<T>,
         feed_forward: impl FnOnce(Dq<T>) -> Dq<T>,
     ) -> ServoCommand<T> {
+        let ServoInput {
+            measurement: m,
+            reference: r,
+            correction: c,
+        } = input;
         let error = r.position - m.position + c.position_offset;
         let speed_ref = self.position_loop(error, r.motor_speed + c.speed);
 

@@ -36,6 +36,17 @@ pub struct ServoCorrection<T = f64> {
     pub iq: T,
 }
 
+/// All that one cycle of a [`crate::Servo`] takes from outside.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ServoInput<T = f64> {
+    /// Sampled at the start of the cycle.
+    pub measurement: Measurement<T>,
+    /// Wanted at the start of the cycle.
+    pub reference: ServoReference<T>,
+    /// Added by a compensation.
+    pub correction: ServoCorrection<T>,
+}
+
 /// What one cycle has to do with beyond its references: the flux to set and
 /// the voltage to do it with. By default i_d = 0 and the voltage is limited
 /// by [`crate::ServoLimits`] alone, as in [`crate::Servo::cycle`].

@@ -6,7 +6,7 @@ use foc_pmsm::inverter::{Inverter, Rotor};
 use foc_pmsm::svpwm::{Duties, Overmodulation, Svpwm, sector};
 use foc_pmsm::{
     AlphaBeta, AntiWindup, Dq, Measurement, MotorParameters, Phases, Pmsm, Servo, ServoCorrection,
-    ServoReference, ServoState,
+    ServoInput, ServoReference, ServoState,
 };
 
 /// Numbers drawn without a library, and the FNV-1a sum of what is made of them.
@@ -118,7 +118,14 @@ fn run(bits: &mut Bits, servo: &Servo) {
             speed: bits.draw(-0.1, 0.1),
             iq: bits.draw(-2.0, 2.0),
         };
-        let command = servo.cycle(&mut state, &m, &r, &c);
+        let command = servo.cycle(
+            &mut state,
+            &ServoInput {
+                measurement: m,
+                reference: r,
+                correction: c,
+            },
+        );
         current = motor().step(current, command.voltage, m.motor_speed, PERIOD);
         bits.add(&[command.speed_ref, command.iq_ref]);
         bits.add_dq(command.voltage);

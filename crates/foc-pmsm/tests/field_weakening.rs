@@ -7,7 +7,7 @@ use axis_scalar::Scalar;
 use foc_pmsm::{
     Dq, FieldWeakening, FieldWeakeningParameters, FieldWeakeningState, FocError, Measurement,
     MotorParameters, OperatingPoint, Pmsm, Servo, ServoCommand, ServoCorrection, ServoGains,
-    ServoLimits, ServoReference, ServoState,
+    ServoInput, ServoLimits, ServoReference, ServoState,
 };
 use proptest::prelude::*;
 
@@ -71,7 +71,14 @@ fn a_measurement_that_is_no_number_does_not_stay_in_the_cascade() {
                 speed,
                 iq,
             };
-            servo.cycle(state, &m, &r, &c)
+            servo.cycle(
+                state,
+                &ServoInput {
+                    measurement: m,
+                    reference: r,
+                    correction: c,
+                },
+            )
         };
         let mut state = ServoState::settled(0.5, Dq { d: 1.0, q: 20.0 });
         let good = numbers;
@@ -111,13 +118,28 @@ fn run(top: f64, limits: &ServoLimits, law: Option<FieldWeakening>) -> Vec<Sampl
         };
         let (m, c) = (drive.measure(), ServoCorrection::default());
         let command = match &law {
-            None => servo.cycle(&mut state, &m, &r, &c),
+            None => servo.cycle(
+                &mut state,
+                &ServoInput {
+                    measurement: m,
+                    reference: r,
+                    correction: c,
+                },
+            ),
             Some(law) => {
                 let at = OperatingPoint {
                     id_ref: field.id_ref,
                     ..OperatingPoint::default()
                 };
-                let command = servo.cycle_with(&mut state, &m, &r, &c, &at);
+                let command = servo.cycle_with(
+                    &mut state,
+                    &ServoInput {
+                        measurement: m,
+                        reference: r,
+                        correction: c,
+                    },
+                    &at,
+                );
                 let most = servo.available_voltage(at.voltage_limit);
                 law.update(&mut field, command.voltage, most);
                 command

@@ -5,8 +5,8 @@ use foc_pmsm::inverter::{Inverter, Rotor};
 use foc_pmsm::svpwm::{Overmodulation, Svpwm};
 use foc_pmsm::{
     CurrentGains, Decoupling, DecouplingCurrent, Dq, FocError, Measurement, MotorParameters,
-    OperatingPoint, Pmsm, Servo, ServoCorrection, ServoGains, ServoLimits, ServoReference,
-    ServoState, VoltageDelay,
+    OperatingPoint, Pmsm, Servo, ServoGains, ServoInput, ServoLimits, ServoReference, ServoState,
+    VoltageDelay,
 };
 use proptest::prelude::*;
 
@@ -37,8 +37,7 @@ fn run(
     gains: &CurrentGains,
     decoupling: &Decoupling,
     m: &Pmsm,
-    reference: Dq,
-    disturbance: Dq,
+    [reference, disturbance]: [Dq; 2],
     (speed, time): (f64, f64),
 ) -> Dq {
     let steps = 20_000;
@@ -76,7 +75,7 @@ proptest! {
             .unwrap();
         let speed = turns * bandwidth / f64::from(p.pole_pairs);
         let after = (speed, 2.0 / bandwidth);
-        let i = run(&gains, &decoupling, &m, dq(d, q), Dq::ZERO, after);
+        let i = run(&gains, &decoupling, &m, [dq(d, q), Dq::ZERO], after);
         let reached = 1.0 - (-2.0_f64).exp();
         let error = (i - dq(d, q) * reached).dot(i - dq(d, q) * reached).sqrt();
         // Of first order in the period, α T = 1e-4; 1.6e-5 measured.
@@ -98,10 +97,10 @@ proptest! {
             .with_active_resistance(all.active_resistance)
             .unwrap();
         // Standing still: the magnets induce nothing.
-        let fast = run(&all, &decoupling, &m, Dq::ZERO, dq(v, v), (0.0, t));
+        let fast = run(&all, &decoupling, &m, [Dq::ZERO, dq(v, v)], (0.0, t));
         let one = CurrentGains::pole_zero(&m, bandwidth).unwrap();
         let plain = Decoupling::new(m, DecouplingCurrent::Measured);
-        let slow = run(&one, &plain, &m, Dq::ZERO, dq(v, v), (0.0, t));
+        let slow = run(&one, &plain, &m, [Dq::ZERO, dq(v, v)], (0.0, t));
         for (l, fast, slow) in
             [(p.inductance_d, fast.d, slow.d), (p.inductance_q, fast.q, slow.q)]
         {
@@ -263,19 +262,22 @@ fn a_cycle_adds_the_voltage() {
         motor_speed: 60.0,
         current: dq(-0.4, 3.0),
     };
-    let reference = ServoReference {
-        position: 1.2e-4,
-        motor_speed: 61.0,
+    let input = |measurement| ServoInput {
+        measurement,
+        reference: ServoReference {
+            position: 1.2e-4,
+            motor_speed: 61.0,
+        },
+        ..ServoInput::default()
     };
-    let none = ServoCorrection::default();
     let point = OperatingPoint {
         id_ref: -1.0,
         voltage_limit: 300.0,
     };
     let (mut plain, mut added) = (ServoState::default(), ServoState::default());
-    let without = servo.cycle_with(&mut plain, &now, &reference, &none, &point);
+    let without = servo.cycle_with(&mut plain, &input(now), &point);
     let law = Decoupling::new(m, DecouplingCurrent::Measured);
-    let with = servo.cycle_decoupled(&mut added, &now, &reference, &none, &point, &law);
+    let with = servo.cycle_decoupled(&mut added, &input(now), &point, &law);
     assert_eq!(
         (with.speed_ref, with.iq_ref),
         (without.speed_ref, without.iq_ref)
@@ -291,14 +293,14 @@ fn a_cycle_adds_the_voltage() {
         motor_speed: f64::NAN,
         ..now
     };
-    let broken = servo.cycle_decoupled(&mut added, &lost, &reference, &none, &point, &law);
+    let broken = servo.cycle_decoupled(&mut added, &input(lost), &point, &law);
     assert!(broken.voltage.d.is_nan());
-    let sound = servo.cycle_decoupled(&mut added, &now, &reference, &none, &point, &law);
+    let sound = servo.cycle_decoupled(&mut added, &input(now), &point, &law);
     assert!(sound.voltage.d.is_finite() && sound.voltage.q.is_finite());
     let fast = Measurement {
         motor_speed: RATED_SPEED * 3.0,
         ..now
     };
-    let limited = servo.cycle_decoupled(&mut added, &fast, &reference, &none, &point, &law);
+    let limited = servo.cycle_decoupled(&mut added, &input(fast), &point, &law);
     assert!(limited.voltage.dot(limited.voltage).sqrt() <= 300.0 * (1.0 + 1e-12));
 }

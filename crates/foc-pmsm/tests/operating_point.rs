@@ -6,7 +6,8 @@ use crate::axis::{
 };
 use axis_scalar::Scalar;
 use foc_pmsm::{
-    Dq, Measurement, OperatingPoint, ServoCorrection, ServoLimits, ServoReference, ServoState,
+    Dq, Measurement, OperatingPoint, ServoCorrection, ServoInput, ServoLimits, ServoReference,
+    ServoState,
 };
 use proptest::prelude::*;
 
@@ -27,7 +28,15 @@ fn the_d_reference_takes_its_share_of_the_current() {
     };
     let run = |at| {
         let mut state = ServoState::default();
-        servo.cycle_with(&mut state, &m, &ServoReference::default(), &c, &at)
+        servo.cycle_with(
+            &mut state,
+            &ServoInput {
+                measurement: m,
+                correction: c,
+                ..ServoInput::default()
+            },
+            &at,
+        )
     };
     // 15² = 9² + 12².
     let weak = run(point(-9.0, f64::INFINITY));
@@ -41,9 +50,10 @@ fn the_d_reference_takes_its_share_of_the_current() {
     }
     let only_d = servo.cycle_with(
         &mut ServoState::default(),
-        &m,
-        &ServoReference::default(),
-        &ServoCorrection::default(),
+        &ServoInput {
+            measurement: m,
+            ..ServoInput::default()
+        },
         &point(-16.0, f64::INFINITY),
     );
     assert!(only_d.saturated.current);
@@ -88,7 +98,15 @@ fn a_sagging_dc_link_is_ridden_through() {
         let dc_voltage = if sag { 320.0 } else { 540.0 };
         let at = OperatingPoint::at_dc_voltage(dc_voltage);
         let m = drive.measure();
-        let command = servo.cycle_with(&mut state, &m, &r, &ServoCorrection::default(), &at);
+        let command = servo.cycle_with(
+            &mut state,
+            &ServoInput {
+                measurement: m,
+                reference: r,
+                ..ServoInput::default()
+            },
+            &at,
+        );
         let length = command.voltage.dot(command.voltage).sqrt();
         assert!(length <= at.voltage_limit * (1.0 + 1e-15));
         limited += i32::from(sag && command.saturated.voltage_q);
@@ -111,8 +129,23 @@ fn default_changes_nothing<T: Scalar>(
             current: cast::dq(Dq { d: id, q: iq }),
         };
         let (r, c) = (ServoReference::default(), ServoCorrection::default());
-        let one = servo.cycle(&mut a, &m, &r, &c);
-        let two = servo.cycle_with(&mut b, &m, &r, &c, &OperatingPoint::default());
+        let one = servo.cycle(
+            &mut a,
+            &ServoInput {
+                measurement: m,
+                reference: r,
+                correction: c,
+            },
+        );
+        let two = servo.cycle_with(
+            &mut b,
+            &ServoInput {
+                measurement: m,
+                reference: r,
+                correction: c,
+            },
+            &OperatingPoint::default(),
+        );
         prop_assert_eq!((one, a), (two, b));
     }
     Ok(())
@@ -138,7 +171,15 @@ fn limits_hold<T: Scalar>(
             current: cast::dq(Dq { d, q }),
         };
         let (r, c) = (ServoReference::default(), ServoCorrection::default());
-        let command = servo.cycle_with(&mut state, &m, &r, &c, &at);
+        let command = servo.cycle_with(
+            &mut state,
+            &ServoInput {
+                measurement: m,
+                reference: r,
+                correction: c,
+            },
+            &at,
+        );
         let i = Dq {
             d: id,
             q: command.iq_ref,

@@ -255,7 +255,7 @@ fn the_flux_of_a_short_circuit_stands() {
 }
 
 #[test]
-fn what_is_refused() {
+fn bad_parameters_are_named() {
     let good = reluctance();
     let field = |p| match AlgebraicSaturation::new(p) {
         Err(FocError::OutOfRange { field, .. }) => field,
@@ -289,7 +289,10 @@ fn what_is_refused() {
     let map = AlgebraicSaturation::new(good).unwrap();
     assert_eq!(SaturatedMotor::new(0, 1.0, map), Err(FocError::NoPolePairs));
     assert!(SaturatedMotor::new(1, -1.0, map).is_err());
+}
 
+#[test]
+fn bad_tables_are_named() {
     let (grid, flux) = ([0.0, 1.0], [0.0, 0.0, 1.0, 1.0]);
     let other = [0.0, 1.0, 0.0, 1.0];
     let parts = FluxTableParts {

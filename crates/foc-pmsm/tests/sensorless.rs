@@ -19,7 +19,7 @@ fn near(angle: f64) -> f64 {
 
 /// A motor turned at a constant electrical speed with constant currents; the observer
 /// begins with errors of the angle and of the speed. The error of the angle over time.
-fn errors(m: &Pmsm, i: Dq, omega: f64, first: (f64, f64), law: (f64, f64), n: usize) -> Vec<f64> {
+fn errors(m: &Pmsm, i: Dq, omega: f64, first: (f64, f64), law: (f64, f64)) -> Vec<f64> {
     let (bandwidth, period) = law;
     let parameters = FluxObserverParameters::of(m, bandwidth, period);
     let observer = FluxObserver::new(*m, parameters).unwrap();
@@ -28,7 +28,7 @@ fn errors(m: &Pmsm, i: Dq, omega: f64, first: (f64, f64), law: (f64, f64), n: us
     state.flux = m.flux(i);
     let u = m.steady_voltage(i, speed);
     let mut angle = 0.0;
-    (0..n)
+    (0..20_000)
         .map(|_| {
             let estimate = observer.estimate(&state, i.inverse_park(angle));
             // The mean of the period.
@@ -61,7 +61,7 @@ proptest! {
         let period = 0.02 / omega.abs();
         let law = (0.3 * omega.abs(), period);
         let i = dq(d * most, q * most);
-        let all = errors(&m, i, omega, (angle, off * omega), law, 20_000);
+        let all = errors(&m, i, omega, (angle, off * omega), law);
         let last = all.last().unwrap().abs();
         // 2.6e-6 rad measured, of second order in the angle of a period, 0.02 rad.
         prop_assert!(last < 2e-5, "{}", last);

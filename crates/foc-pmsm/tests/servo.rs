@@ -6,8 +6,8 @@ use crate::axis::{
     log_uniform, motor, servo,
 };
 use foc_pmsm::{
-    AntiWindup, Dq, FocError, Measurement, Servo, ServoCorrection, ServoGains, ServoLimits,
-    ServoReference, ServoState,
+    AntiWindup, Dq, FocError, Measurement, Servo, ServoCorrection, ServoGains, ServoInput,
+    ServoLimits, ServoReference, ServoState,
 };
 use proptest::prelude::*;
 
@@ -24,7 +24,14 @@ fn one_cycle_by_hand() {
         position: 0.6,
         motor_speed: 60.0 * RPM,
     };
-    let command = servo().cycle(&mut state, &m, &r, &ServoCorrection::default());
+    let command = servo().cycle(
+        &mut state,
+        &ServoInput {
+            measurement: m,
+            reference: r,
+            ..ServoInput::default()
+        },
+    );
 
     let speed_ref = 280.2 * 0.01 + 60.0; // rpm: 10 µm of error
     let delta = speed_ref - 30.0;
@@ -51,7 +58,16 @@ fn one_cycle_by_hand() {
 fn corrections_act_where_they_say() {
     let servo = servo();
     let (m, r) = (Measurement::default(), ServoReference::default());
-    let run = |c: ServoCorrection| servo.cycle(&mut ServoState::default(), &m, &r, &c);
+    let run = |c: ServoCorrection| {
+        servo.cycle(
+            &mut ServoState::default(),
+            &ServoInput {
+                measurement: m,
+                reference: r,
+                correction: c,
+            },
+        )
+    };
     let zero = ServoCorrection::default();
     // A position offset is a position error, a speed adds to the reference.
     let offset = run(ServoCorrection {
@@ -64,13 +80,32 @@ fn corrections_act_where_they_say() {
     };
     assert_eq!(
         offset,
-        servo.cycle(&mut ServoState::default(), &m, &shifted, &zero)
+        servo.cycle(
+            &mut ServoState::default(),
+            &ServoInput {
+                measurement: m,
+                reference: shifted,
+                correction: zero
+            }
+        )
     );
     assert_eq!(run(ServoCorrection { speed: 2.0, ..zero }).speed_ref, 2.0);
     // A current is added before the limit and leaves the integral alone.
     let mut state = ServoState::default();
     let c = ServoCorrection { iq: 4.0, ..zero };
-    assert_eq!(servo.cycle(&mut state, &m, &r, &c).iq_ref, 4.0);
+    assert_eq!(
+        servo
+            .cycle(
+                &mut state,
+                &ServoInput {
+                    measurement: m,
+                    reference: r,
+                    correction: c
+                }
+            )
+            .iq_ref,
+        4.0
+    );
     assert_eq!(state.speed.integral, 0.0);
     let over = run(ServoCorrection { iq: 40.0, ..zero });
     assert!(over.iq_ref == 15.0 && over.saturated.current);
@@ -115,7 +150,14 @@ fn a_settled_state_stays_settled() {
         motor_speed: speed,
     };
     for _ in 0..10 {
-        let command = servo.cycle(&mut state, &m, &r, &ServoCorrection::default());
+        let command = servo.cycle(
+            &mut state,
+            &ServoInput {
+                measurement: m,
+                reference: r,
+                ..ServoInput::default()
+            },
+        );
         assert_eq!((command.iq_ref, command.voltage), (3.0, u));
         assert_eq!(motor.step(i, command.voltage, speed, PERIOD), i);
     }
@@ -145,9 +187,11 @@ fn a_rigid_drive_follows_a_ramp_without_error() {
             };
             let command = servo.cycle(
                 &mut state,
-                &drive.measure(),
-                &r,
-                &ServoCorrection::default(),
+                &ServoInput {
+                    measurement: drive.measure(),
+                    reference: r,
+                    ..ServoInput::default()
+                },
             );
             assert!(command.iq_ref.abs() <= 15.0);
             saturated |= command.saturated.current;
@@ -289,7 +333,7 @@ proptest! {
         // them: more than the control does where the inertia is huge.
         let rounding = f64::from(cycles) * f64::EPSILON * (speed * inner.period).abs();
         for _ in 0..cycles {
-            let command = servo.cycle(&mut state, &drive.measure(), &r, &ServoCorrection::default());
+            let command = servo.cycle(&mut state, &ServoInput { measurement: drive.measure(), reference: r, ..ServoInput::default() });
             drive.advance(command.voltage, load, inner.period);
             // The frame moves with the reference: no distance rounds.
             drive.angle -= speed * inner.period;
@@ -321,14 +365,14 @@ proptest! {
         let m = Measurement { position, motor_speed: speed, current: Dq { d: id, q: iq } };
         let mut state = ServoState::default();
         for _ in 0..cycles {
-            let c = servo.cycle(&mut state, &m, &ServoReference::default(), &ServoCorrection::default());
+            let c = servo.cycle(&mut state, &ServoInput { measurement: m, ..ServoInput::default() });
             prop_assert!(c.iq_ref.abs() <= l.current);
             // √(U² − u_d²) rounds once or twice.
             prop_assert!(c.voltage.dot(c.voltage).sqrt() <= l.voltage * (1.0 + 1e-15));
         }
         let free = ServoLimits { current: f64::INFINITY, voltage: f64::INFINITY };
         let free = Servo::new(gains, free, period).unwrap();
-        let c = free.cycle(&mut ServoState::default(), &m, &ServoReference::default(), &ServoCorrection::default());
+        let c = free.cycle(&mut ServoState::default(), &ServoInput { measurement: m, ..ServoInput::default() });
         prop_assert_eq!(c.saturated, Default::default());
         prop_assert!(c.voltage.q.is_finite());
     }

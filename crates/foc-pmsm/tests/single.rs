@@ -7,7 +7,7 @@ use crate::axis::{
 };
 use axis_scalar::Scalar;
 use foc_pmsm::svpwm::{Overmodulation, Svpwm};
-use foc_pmsm::{AlphaBeta, Dq, Pmsm, ServoCorrection, ServoReference, ServoState};
+use foc_pmsm::{AlphaBeta, Dq, Pmsm, ServoInput, ServoReference, ServoState};
 use proptest::prelude::*;
 
 const EPSILON: f64 = f32::EPSILON as f64;
@@ -90,7 +90,14 @@ fn run<T: Scalar>() -> Vec<Sample> {
     let cycles = (DURATION / PERIOD) as u32;
     let sample = |k| {
         let (m, r) = (drive.measure(), reference(f64::from(k) * PERIOD));
-        let command = servo.cycle(&mut state, &m, &r, &ServoCorrection::default());
+        let command = servo.cycle(
+            &mut state,
+            &ServoInput {
+                measurement: m,
+                reference: r,
+                ..ServoInput::default()
+            },
+        );
         let current = cast::widened(drive.current);
         drive.advance(command.voltage, 5.0, PERIOD);
         Sample {

@@ -6,7 +6,7 @@ use foc_pmsm::svpwm::{Duties, Overmodulation, Svpwm, sector};
 use foc_pmsm::{
     AlphaBeta, AntiWindup, Dq, FieldWeakening, FieldWeakeningParameters, FieldWeakeningState,
     FocError, Measurement, MotorParameters, OperatingPoint, Phases, Pi, PiParameters, PiState,
-    Pmsm, Servo, ServoCorrection, ServoGains, ServoLimits, ServoReference, ServoState,
+    Pmsm, Servo, ServoCorrection, ServoGains, ServoInput, ServoLimits, ServoReference, ServoState,
 };
 use proptest::prelude::*;
 
@@ -91,10 +91,10 @@ proptest! {
             let now = Measurement { position: b, motor_speed: c, current: Dq { d: e, q: f } };
             let reference = ServoReference { position: g, motor_speed: h };
             let correction = ServoCorrection { position_offset: k, speed: l, iq: m };
-            let _ = servo.cycle(&mut state, &now, &reference, &correction);
+            let _ = servo.cycle(&mut state, &ServoInput { measurement: now, reference, correction });
             let _ = servo.current_loop(&mut state, Dq { d: a, q: b }, Dq { d: c, q: d });
             let point = OperatingPoint { id_ref: n, voltage_limit: k };
-            let _ = servo.cycle_with(&mut state, &now, &reference, &correction, &point);
+            let _ = servo.cycle_with(&mut state, &ServoInput { measurement: now, reference, correction }, &point);
             let at = OperatingPoint::at_dc_voltage(l);
             let (i, u) = (Dq { d: a, q: b }, Dq { d: c, q: d });
             let _ = servo.current_loop_within(&mut state, i, u, at.voltage_limit);

@@ -16,8 +16,7 @@ use foc_pmsm::svpwm::{DiscontinuousPwm, Duties, Overmodulation, Svpwm};
 use foc_pmsm::{
     AlphaBeta, CurrentGains, DeadTimeCompensation, Decoupling, DecouplingCurrent, Dq, LinearMotor,
     LinearMotorParameters, Measurement, MotorParameters, OperatingLimits, OperatingPoint, Phases,
-    Pmsm, Servo, ServoCorrection, ServoGains, ServoLimits, ServoReference, ServoState,
-    VoltageDelay,
+    Pmsm, Servo, ServoGains, ServoInput, ServoLimits, ServoReference, ServoState, VoltageDelay,
 };
 use proptest::prelude::*;
 
@@ -95,21 +94,23 @@ fn drives<T: Scalar>(m: Pmsm<T>, n: [T; 9]) {
             continue;
         };
         let mut state = ServoState::settled(a, u);
-        let now = Measurement {
-            position: b,
-            motor_speed: c,
-            current: i,
-        };
-        let wanted = ServoReference {
-            position: d,
-            motor_speed: e,
+        let input = ServoInput {
+            measurement: Measurement {
+                position: b,
+                motor_speed: c,
+                current: i,
+            },
+            reference: ServoReference {
+                position: d,
+                motor_speed: e,
+            },
+            ..ServoInput::default()
         };
         let point = OperatingPoint {
             id_ref: f,
             voltage_limit: g,
         };
-        let none = ServoCorrection::default();
-        let _ = servo.cycle_decoupled(&mut state, &now, &wanted, &none, &point, &law);
+        let _ = servo.cycle_decoupled(&mut state, &input, &point, &law);
     }
     if let Ok(delay) = VoltageDelay::new(a.abs(), b.abs()) {
         let _ = (

@@ -5,7 +5,7 @@ use foc_pmsm::svpwm::{Duties, Overmodulation, Svpwm, sector};
 use foc_pmsm::{
     AlphaBeta, AntiWindup, Dq, FieldWeakening, FieldWeakeningParameters, FieldWeakeningState,
     Measurement, MotorParameters, OperatingPoint, Phases, Pi, PiParameters, PiState, Pmsm, Servo,
-    ServoCorrection, ServoGains, ServoLimits, ServoReference, ServoState,
+    ServoCorrection, ServoGains, ServoInput, ServoLimits, ServoReference, ServoState,
 };
 use proptest::prelude::*;
 
@@ -91,9 +91,9 @@ proptest! {
             let now = Measurement { position: b, motor_speed: c, current: Dq { d: e, q: f } };
             let reference = ServoReference { position: g, motor_speed: h };
             let correction = ServoCorrection { position_offset: k, speed: l, iq: m };
-            let _ = servo.cycle(&mut state, &now, &reference, &correction);
+            let _ = servo.cycle(&mut state, &ServoInput { measurement: now, reference, correction });
             let point = OperatingPoint { id_ref: n, ..OperatingPoint::at_dc_voltage(k) };
-            let _ = servo.cycle_with(&mut state, &now, &reference, &correction, &point);
+            let _ = servo.cycle_with(&mut state, &ServoInput { measurement: now, reference, correction }, &point);
         }
         let p = FieldWeakeningParameters {
             voltage_share: a, ki: b.abs(), current: c.abs(), period: d.abs(),

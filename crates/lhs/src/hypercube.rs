@@ -73,7 +73,7 @@ impl LatinHypercube {
         self.with_placement(Placement::Centred)
     }
 
-    /// The same strata and combinations, placed as told.
+    /// The same strata and combinations with another place of the points in their strata.
     pub fn with_placement(self, placement: Placement) -> Self {
         Self { placement, ..self }
     }
@@ -193,7 +193,7 @@ impl LatinHypercube {
     fn place_block(&self, jitter: u64, first: u64, cells: &[u64], points: &mut [f64]) {
         let strata = self.strata;
         let bits = |i: usize| counter_hash(jitter, first + i as u64);
-        // Which of the four is told apart outside of the loop, or none used vectors.
+        // Chosen outside of the loop: inside, the compiler would use no vector instructions.
         match (self.placement, strata.is_fast()) {
             (Placement::Centred, true) => each(points, cells, |_, c| strata.fast_middle(c)),
             (Placement::Centred, false) => each(points, cells, |_, c| strata.middle(c)),

@@ -28,9 +28,10 @@
 //! designs by, [`map`] and [`map_balanced`] bring them to physical values,
 //! integers and categories among them.
 //!
-//! # Shapes and units
-//! A [`Design`] is n × m, one row a point. Designs of probabilities have no
-//! unit and lie in (0, 1); [`map`] gives column j the unit of marginal j.
+//! # Symbols, shapes and units
+//! n points of m variables; j counts variables, k strata, i points. A [`Design`] is n × m, one row
+//! a point. Designs of probabilities have no unit and lie in (0, 1); [`map`] gives column j the
+//! unit of marginal j.
 //!
 //! # One seed, one design
 //! πⱼ is a keyed bijection and u a hash of (seed, column, row): any row is
@@ -39,7 +40,7 @@
 //! depend on the arguments alone, not on threads.
 //!
 //! # Example
-//! Five of the paper's 5000 sampling points (its Table 5, here in SI units):
+//! Five of 5000 states of a feed axis, by position, velocity, acceleration and current:
 //! ```
 //! use lhs::{LatinHypercube, Uniform, map};
 //!

@@ -49,7 +49,7 @@ impl Strata {
         self.n <= FAST_LIMIT
     }
 
-    /// The point of stratum `c` at the random place told by 64 random `bits`.
+    /// The point of stratum `c` at a random place, made of 64 random `bits`.
     #[inline]
     pub(crate) fn point(&self, c: u64, bits: u64) -> f64 {
         match self.is_fast() {

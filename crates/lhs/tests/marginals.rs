@@ -103,12 +103,32 @@ proptest! {
     }
 }
 
-/// Every marginal cut to a thin slice below its upper end, and to its mirror image at the
-/// lower one: 1000 strata give 1000 values, which are those of the density there, and
-/// mirror images of each other.
-#[test]
-fn thin_tails_keep_their_strata() {
-    let pair = |upper: Box<dyn Marginal>, lower: Box<dyn Marginal>| (upper, lower);
+/// A marginal that ends at 0 and its mirror image that begins there, cut to a thin slice at 0.
+struct Slice {
+    name: &'static str,
+    /// Whether the density rises from 0 at the end; constant if not.
+    is_slope: bool,
+    below: Box<dyn Marginal>,
+    above: Box<dyn Marginal>,
+}
+
+impl Slice {
+    fn new<M: Cumulative + 'static>(
+        name: &'static str,
+        [below, above]: [M; 2],
+        width: f64,
+    ) -> Self {
+        Self {
+            name,
+            is_slope: name == "triangle",
+            below: Box::new(Truncated::new(below, -width, 0.0).unwrap()),
+            above: Box::new(Truncated::new(above, 0.0, width).unwrap()),
+        }
+    }
+}
+
+/// Every marginal, cut to slices of that width.
+fn slices(width: f64) -> [Slice; 5] {
     let humps = |at: f64| {
         let parts: Vec<(f64, Box<dyn Cumulative>)> = vec![
             (1.0, Box::new(Uniform::new(at - 1.0, at).unwrap())),
@@ -117,75 +137,51 @@ fn thin_tails_keep_their_strata() {
         Mixture::new(parts).unwrap()
     };
     let table = |points: &[(f64, f64)]| Tabulated::new(points).unwrap();
+    let uniform = [
+        Uniform::new(-1.0, 0.0).unwrap(),
+        Uniform::new(0.0, 1.0).unwrap(),
+    ];
+    let twice = [
+        Truncated::new(uniform[0], -3.0 * width, 0.0).unwrap(),
+        Truncated::new(uniform[1], 0.0, 3.0 * width).unwrap(),
+    ];
+    let triangle = [
+        Triangular::new(-1.0, -1.0, 0.0).unwrap(),
+        Triangular::new(0.0, 1.0, 1.0).unwrap(),
+    ];
+    let ramp = [
+        table(&[(-1.0, 0.0), (0.0, 1.0)]),
+        table(&[(0.0, 0.0), (1.0, 1.0)]),
+    ];
+    [
+        Slice::new("uniform", uniform, width),
+        Slice::new("twice", twice, width),
+        Slice::new("triangle", triangle, width),
+        Slice::new("table", ramp, width),
+        Slice::new("mixture", [-1.0, 1.0].map(humps), width),
+    ]
+}
+
+/// A thin slice below an upper end, and its mirror image at a lower one: 1000 strata give 1000
+/// values, which are those of the density there, and mirror images of each other.
+#[test]
+fn thin_tails_keep_their_strata() {
     for width in [1e-7, 1e-12] {
-        let inner = |m| Truncated::new(m, -3.0 * width, 0.0).unwrap();
-        let mirrored = |m| Truncated::new(m, 0.0, 3.0 * width).unwrap();
-        let uniform = (
-            Uniform::new(-1.0, 0.0).unwrap(),
-            Uniform::new(0.0, 1.0).unwrap(),
-        );
-        let slope = (
-            Triangular::new(-1.0, -1.0, 0.0).unwrap(),
-            Triangular::new(0.0, 1.0, 1.0).unwrap(),
-        );
-        let ramp = (
-            table(&[(-1.0, 0.0), (0.0, 1.0)]),
-            table(&[(0.0, 0.0), (1.0, 1.0)]),
-        );
-        // Of a density that is constant, but for the slope: there it rises from the end.
-        let cases = [
-            (
-                "uniform",
-                false,
-                pair(
-                    Box::new(Truncated::new(uniform.0, -width, 0.0).unwrap()),
-                    Box::new(Truncated::new(uniform.1, 0.0, width).unwrap()),
-                ),
-            ),
-            (
-                "twice",
-                false,
-                pair(
-                    Box::new(Truncated::new(inner(uniform.0), -width, 0.0).unwrap()),
-                    Box::new(Truncated::new(mirrored(uniform.1), 0.0, width).unwrap()),
-                ),
-            ),
-            (
-                "triangle",
-                true,
-                pair(
-                    Box::new(Truncated::new(slope.0, -width, 0.0).unwrap()),
-                    Box::new(Truncated::new(slope.1, 0.0, width).unwrap()),
-                ),
-            ),
-            (
-                "table",
-                false,
-                pair(
-                    Box::new(Truncated::new(ramp.0, -width, 0.0).unwrap()),
-                    Box::new(Truncated::new(ramp.1, 0.0, width).unwrap()),
-                ),
-            ),
-            (
-                "mixture",
-                false,
-                pair(
-                    Box::new(Truncated::new(humps(-1.0), -width, 0.0).unwrap()),
-                    Box::new(Truncated::new(humps(1.0), 0.0, width).unwrap()),
-                ),
-            ),
-        ];
-        for (name, slope, (upper, lower)) in cases {
-            let mut before = f64::NEG_INFINITY;
+        for slice in slices(width) {
+            let (name, mut before) = (slice.name, f64::NEG_INFINITY);
             for stratum in 0..1000 {
                 let p = (f64::from(stratum) + 0.5) / 1000.0;
-                let x = upper.inverse_cdf(p);
+                let x = slice.below.inverse_cdf(p);
                 assert!(x > before, "{name} {width:e}: {x:e} after {before:e}");
                 before = x;
-                let share = if slope { (1.0 - p).sqrt() } else { 1.0 - p };
+                let share = if slice.is_slope {
+                    (1.0 - p).sqrt()
+                } else {
+                    1.0 - p
+                };
                 let off = x / (-width * share) - 1.0;
                 assert!(off.abs() < 1e-12, "{name} {width:e} at {p}: off by {off:e}");
-                let mirror = lower.inverse_cdf(1.0 - p);
+                let mirror = slice.above.inverse_cdf(1.0 - p);
                 assert!(
                     (mirror / -x - 1.0).abs() < 1e-12,
                     "{name} {width:e}: {mirror:e} {x:e}"

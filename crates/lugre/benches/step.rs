@@ -50,23 +50,21 @@ fn step_with(
     }
 }
 
-fn compare(c: &mut Criterion, name: &str, from: f64, to: f64, h: f64) {
+fn compare(c: &mut Criterion, name: &str, course: [f64; 3]) {
     let law = LuGre::new(black_box(PAPER)).expect("the paper's law is valid");
     let own = |z: f64, w0: f64, w1: f64, h: f64| law.step(z, w0, w1, h);
-    run(c, &format!("own exponentials, {name}"), own, from, to, h);
+    run(c, &format!("own exponentials, {name}"), own, course);
     let with_libm = step_with(&law, libm::exp, libm::expm1);
-    run(c, &format!("libm, {name}"), with_libm, from, to, h);
+    run(c, &format!("libm, {name}"), with_libm, course);
     let with_std = step_with(&law, f64::exp, f64::exp_m1);
-    run(c, &format!("std, {name}"), with_std, from, to, h);
+    run(c, &format!("std, {name}"), with_std, course);
 }
 
 fn run(
     c: &mut Criterion,
     name: &str,
     step: impl Fn(f64, f64, f64, f64) -> f64,
-    from: f64,
-    to: f64,
-    h: f64,
+    [from, to, h]: [f64; 3],
 ) {
     let increment = (to - from) / 1000.0;
     c.bench_function(&format!("1000 step, {name}"), |b| {
@@ -90,7 +88,7 @@ fn steps(c: &mut Criterion) {
     ] {
         chain::<f64>(c, name, [from, to, h]);
         chain::<f32>(c, &format!("f32, {name}"), [from, to, h]);
-        compare(c, name, from, to, h);
+        compare(c, name, [from, to, h]);
     }
 }
 

@@ -34,13 +34,21 @@
 //! for control of systems with friction", IEEE Trans. Automatic Control 40(3),
 //! 1995, doi 10.1109/9.376053.)
 //!
-//! # Shapes and units
-//! One scalar state `z` (rad), one scalar input `ω` (rad/s), one scalar output
-//! `T_f` (N·m, positive when it opposes positive `ω`). Read N for N·m, m for
-//! rad and m/s for rad/s and the same code describes a sliding contact: no
+//! # Symbols and units
+//! | symbol | what | unit |
+//! |---|---|---|
+//! | ω | sliding speed, the one input | rad/s |
+//! | z | mean deflection of the bristles, the one state | rad |
+//! | T_f | friction, the one output; positive when it opposes positive ω | N·m |
+//! | T_C, T_S | level at high speed (Coulomb), level at break-away (stiction) | N·m |
+//! | Ω_S | Stribeck speed, at which the level has fallen by 63 % of T_S − T_C | rad/s |
+//! | σ0, σ1 | stiffness and damping of the bristles | N·m/rad, N·m·s/rad |
+//! | σ2 | viscous friction | N·m·s/rad |
+//!
+//! Read N for N·m, m for rad and m/s for rad/s and the same code describes a sliding contact: no
 //! equation holds a conversion.
 //!
-//! # The step
+//! # The step, and an example
 //! Equation (1) is linear in `z`, with the time constant `G / (σ0 |ω|)`, which
 //! is under a millisecond at traverse speed and infinite at rest.
 //! [`LuGre::step`] is therefore an exponential integrator: exact for a constant

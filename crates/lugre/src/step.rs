@@ -81,7 +81,7 @@ impl<T: Exponential> LuGre<T> {
     ///
     /// The impulse belongs to the same solution as `z1`: exact for a constant
     /// speed, so that momentum and work balance in steps longer than the
-    /// relaxation time too, where the end torque stands for nothing.
+    /// relaxation time too, in which the torque at the end is not that of the step.
     #[must_use]
     #[inline]
     pub fn step_impulse(&self, z0: T, w0: T, w1: T, h: T) -> (T, T) {

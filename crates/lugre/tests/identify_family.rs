@@ -3,8 +3,8 @@
 
 use crate::rig::Noise;
 use lugre::identify::{
-    Before, FrictionIdentifyError, FrictionRecord, Identifiable, MeasuredMotion, UnknownNumbers,
-    identify_law,
+    BeforeRecord, FrictionIdentifyError, FrictionRecord, Identifiable, MeasuredMotion,
+    UnknownNumbers, identify_law,
 };
 use lugre::{
     BoucWenOnset, Bristle, BristleParameters, DahlOnset, ElastoPlasticOnset, FrictionLevel,
@@ -125,7 +125,7 @@ fn covers<L: Identifiable>(
             motion: MeasuredMotion::Speed(&speeds),
             force: &force,
             noise: 1.0,
-            before: Before::Unloaded,
+            before: BeforeRecord::Unloaded,
             skip: 0,
         };
         let fit = identify_law(start, &[record], &unknown).unwrap();
@@ -299,8 +299,8 @@ fn several_records_of_displacement() {
     // In the 60 samples the first slides by 1.4 mm, nine deflections; what the second begins
     // with is right but for the speed.
     let records = [
-        record(0..220, Before::Backward, 0.3),
-        record(180..400, Before::Forward, 0.3),
+        record(0..220, BeforeRecord::Backward, 0.3),
+        record(180..400, BeforeRecord::Forward, 0.3),
     ];
     let fit = identify_law(
         &law(0.0, LinearOnset {}),
@@ -325,7 +325,7 @@ fn what_keeps_a_fit_from_being_one_is_said() {
         motion: MeasuredMotion::Speed(&speeds),
         force: &force,
         noise: 1.0,
-        before: Before::Unloaded,
+        before: BeforeRecord::Unloaded,
         skip: 10,
     };
     let fit = |record| identify_law(&start, &[record], &UnknownNumbers::default());
@@ -422,7 +422,7 @@ proptest! {
             },
             force: &force,
             noise: 1.0,
-            before: Before::Forward,
+            before: BeforeRecord::Forward,
             skip,
         };
         let unknown = UnknownNumbers {

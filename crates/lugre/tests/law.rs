@@ -127,65 +127,20 @@ fn viscous_friction_alone() {
 
 #[test]
 fn bad_parameters_are_named() {
-    let cases = [
-        (
-            Parameters {
-                coulomb: f64::NAN,
-                ..PAPER
-            },
-            "coulomb",
-        ),
-        (
-            Parameters {
-                coulomb: 0.0,
-                ..PAPER
-            },
-            "coulomb",
-        ),
-        (
-            Parameters {
-                stiction: f64::INFINITY,
-                ..PAPER
-            },
-            "stiction",
-        ),
-        (
-            Parameters {
-                stribeck_speed: 0.0,
-                ..PAPER
-            },
-            "stribeck_speed",
-        ),
-        (
-            Parameters {
-                stiffness: 0.0,
-                ..PAPER
-            },
-            "stiffness",
-        ),
-        (
-            Parameters {
-                stiffness: 1e-310,
-                ..PAPER
-            },
-            "stiffness",
-        ),
-        (
-            Parameters {
-                damping: -1.0,
-                ..PAPER
-            },
-            "damping",
-        ),
-        (
-            Parameters {
-                viscous: -1e-9,
-                ..PAPER
-            },
-            "viscous",
-        ),
+    type Spoil = fn(&mut Parameters);
+    let cases: [(Spoil, &str); 8] = [
+        (|p| p.coulomb = f64::NAN, "coulomb"),
+        (|p| p.coulomb = 0.0, "coulomb"),
+        (|p| p.stiction = f64::INFINITY, "stiction"),
+        (|p| p.stribeck_speed = 0.0, "stribeck_speed"),
+        (|p| p.stiffness = 0.0, "stiffness"),
+        (|p| p.stiffness = 1e-310, "stiffness"),
+        (|p| p.damping = -1.0, "damping"),
+        (|p| p.viscous = -1e-9, "viscous"),
     ];
-    for (parameters, expected) in cases {
+    for (spoil, expected) in cases {
+        let mut parameters = PAPER;
+        spoil(&mut parameters);
         match LuGre::new(parameters) {
             Err(LugreError::Invalid { field, .. }) => assert_eq!(field, expected),
             other => panic!("{expected}: {other:?}"),

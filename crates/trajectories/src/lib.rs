@@ -16,8 +16,19 @@
 //! every case, those included that reach neither the speed nor the acceleration limit.
 //!
 //! A [`Program`] (feature `alloc`) chains such moves with dwells, sines and chirps, and both are
-//! [`Motion`]s: a duration in s and a [`Setpoint`] at any `t`, shapes `s -> (m, m/s, m/s², m/s³)`.
+//! [`Motion`]s: a duration and a [`Setpoint`] at any time.
 //!
+//! # Symbols and units
+//! | symbol | what | unit |
+//! |---|---|---|
+//! | t | time since the motion began | s |
+//! | s and its derivatives | position, velocity, acceleration, jerk: a [`Setpoint`] | m, m/s, m/s², m/s³ |
+//! | s₀, s₁ | where the motion begins and ends | m |
+//! | V, A, J | [`Limits`] | m/s, m/s², m/s³ |
+//!
+//! For an axis that turns read rad for m.
+//!
+//! # Example
 //! ```
 //! use trajectories::{Limits, Motion, SCurve};
 //!
@@ -39,16 +50,16 @@
 //! # Ok::<(), trajectories::TrajectoryError>(())
 //! ```
 //!
-//! # What it deliberately knows nothing of
-//! The machine that follows the motion: no axis, stroke, control period, controller or error
-//! enters here. Callers compare [`Extremes`] with their own stroke and sample at their own
-//! instants. Steps of a program are of one axis, with rest at both ends: no blending between moves.
-//!
-//! # In motion
+//! # From a state in motion
 //! [`Transfer`] leads from any position, velocity and acceleration to any other in least time, or in a longer one that is
 //! asked for; [`VelocityChange`] to a velocity, wherever that is reached, for instance to a stop. [`Axes`] makes several axes start
 //! and end together, on a straight line if they can. [`Follow`] takes a target that may change in every cycle of a
 //! controller.
+//!
+//! # What it knows nothing of
+//! The machine that follows the motion: no axis, stroke, control period, controller or error
+//! enters here. Callers compare [`Extremes`] with their own stroke and sample at their own
+//! instants. Steps of a program are of one axis, with rest at both ends: no blending between moves.
 //!
 //! # Scalar
 //! All motions are generic over their scalar, planning included: `f64` where none is named, `f32`

@@ -157,7 +157,7 @@ impl<T: Real> Transfer<T> {
     ///
     /// Not every longer time is possible: an axis that moves towards its target at the start, and must move on at its
     /// end, may have to turn back between, for which there must be time. The result then takes the
-    /// next longer time that is possible; its [`duration`](Motion::duration) tells.
+    /// next longer time that is possible, its [`duration`](Motion::duration).
     ///
     /// Of all motions in a given time the one is taken that lies between the one that goes farthest and the one that
     /// goes least far, in a constant ratio of their jerks: limits on velocity, acceleration and jerk are each convex, so
@@ -201,7 +201,7 @@ impl<T: Real> Transfer<T> {
         Self::finish(course, (start, target), limits, within)
     }
 
-    /// The whole of a planned course, if it can be told in numbers.
+    /// The motion of a planned course, or an error if its times or positions are not finite.
     fn finish(
         course: Course<T>,
         (start, target): (&Setpoint<T>, &Setpoint<T>),

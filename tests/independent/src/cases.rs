@@ -50,30 +50,30 @@ pub struct Case {
 /// All cases.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
-    row("loop-nothing", "nothing; noise in the loop", nothing, Noise::Loop, 0.0, 1),
-    row("loop-viscous", "viscous friction; noise in the loop", viscous, Noise::Loop, 0.0, 2),
-    row("loop-backlash", "backlash of 8 µm; noise in the loop", backlash, Noise::Loop, 0.0, 3),
-    row("loop-lead", "periodic lead error; noise in the loop", lead, Noise::Loop, 0.0, 4),
-    row("loop-cogging", "cogging; noise in the loop", cogging, Noise::Loop, 0.0, 5),
-    row("loop-thermal", "thermal growth; noise in the loop", thermal, Noise::Loop, 0.0, 6),
-    row("loop-delay", "late current reference; noise in the loop", delay, Noise::Loop, 0.0, 7),
-    row("logger-nothing-1", "nothing; noise of the logger", nothing, Noise::Logger, 0.0, 8),
-    row("logger-nothing-2", "nothing; noise of the logger", nothing, Noise::Logger, 0.0, 9),
-    row("logger-nothing-3", "nothing; noise of the logger", nothing, Noise::Logger, 0.0, 10),
-    row("logger-viscous", "viscous friction; noise of the logger", viscous, Noise::Logger, 0.0, 11),
-    row("tanh-coulomb", "dry friction of 94 N, tanh onset", coulomb, Noise::Loop, 0.0, 12),
-    row("tanh-bump", "dry friction over a stretch, tanh onset", bump, Noise::Loop, 0.0, 13),
-    row("tanh-asymmetric", "dry friction by direction, tanh onset", asymmetric, Noise::Loop, 0.0, 14),
-    row("current-gain", "8 % too much current read", current_gain, Noise::Loop, 0.0, 15),
-    row("position-damping", "friction with (x − x0) v", position_damping, Noise::Loop, 0.0, 16),
-    row("off5-nothing", "nothing; parameters off 5 %", nothing, Noise::Loop, 5.0, 17),
-    row("off5-viscous", "viscous friction; parameters off 5 %", viscous, Noise::Loop, 5.0, 18),
-    row("off5-backlash", "backlash of 8 µm; parameters off 5 %", backlash, Noise::Loop, 5.0, 19),
-    row("off10-nothing", "nothing; parameters off 10 %", nothing, Noise::Loop, 10.0, 20),
-    row("off10-bump", "dry friction over a stretch; parameters off 10 %", bump, Noise::Loop, 10.0, 21),
-    row("off20-nothing", "nothing; parameters off 20 %", nothing, Noise::Loop, 20.0, 22),
-    row("off20-viscous", "viscous friction; parameters off 20 %", viscous, Noise::Loop, 20.0, 23),
-    row("off20-cogging", "cogging; parameters off 20 %", cogging, Noise::Loop, 20.0, 24),
+    row(["loop-nothing", "nothing; noise in the loop"], nothing, Noise::Loop, 0.0, 1),
+    row(["loop-viscous", "viscous friction; noise in the loop"], viscous, Noise::Loop, 0.0, 2),
+    row(["loop-backlash", "backlash of 8 µm; noise in the loop"], backlash, Noise::Loop, 0.0, 3),
+    row(["loop-lead", "periodic lead error; noise in the loop"], lead, Noise::Loop, 0.0, 4),
+    row(["loop-cogging", "cogging; noise in the loop"], cogging, Noise::Loop, 0.0, 5),
+    row(["loop-thermal", "thermal growth; noise in the loop"], thermal, Noise::Loop, 0.0, 6),
+    row(["loop-delay", "late current reference; noise in the loop"], delay, Noise::Loop, 0.0, 7),
+    row(["logger-nothing-1", "nothing; noise of the logger"], nothing, Noise::Logger, 0.0, 8),
+    row(["logger-nothing-2", "nothing; noise of the logger"], nothing, Noise::Logger, 0.0, 9),
+    row(["logger-nothing-3", "nothing; noise of the logger"], nothing, Noise::Logger, 0.0, 10),
+    row(["logger-viscous", "viscous friction; noise of the logger"], viscous, Noise::Logger, 0.0, 11),
+    row(["tanh-coulomb", "dry friction of 94 N, tanh onset"], coulomb, Noise::Loop, 0.0, 12),
+    row(["tanh-bump", "dry friction over a stretch, tanh onset"], bump, Noise::Loop, 0.0, 13),
+    row(["tanh-asymmetric", "dry friction by direction, tanh onset"], asymmetric, Noise::Loop, 0.0, 14),
+    row(["current-gain", "8 % too much current read"], current_gain, Noise::Loop, 0.0, 15),
+    row(["position-damping", "friction with (x − x0) v"], position_damping, Noise::Loop, 0.0, 16),
+    row(["off5-nothing", "nothing; parameters off 5 %"], nothing, Noise::Loop, 5.0, 17),
+    row(["off5-viscous", "viscous friction; parameters off 5 %"], viscous, Noise::Loop, 5.0, 18),
+    row(["off5-backlash", "backlash of 8 µm; parameters off 5 %"], backlash, Noise::Loop, 5.0, 19),
+    row(["off10-nothing", "nothing; parameters off 10 %"], nothing, Noise::Loop, 10.0, 20),
+    row(["off10-bump", "dry friction over a stretch; parameters off 10 %"], bump, Noise::Loop, 10.0, 21),
+    row(["off20-nothing", "nothing; parameters off 20 %"], nothing, Noise::Loop, 20.0, 22),
+    row(["off20-viscous", "viscous friction; parameters off 20 %"], viscous, Noise::Loop, 20.0, 23),
+    row(["off20-cogging", "cogging; parameters off 20 %"], cogging, Noise::Loop, 20.0, 24),
     few("few-nothing", "nothing; parameters off 5 %, few channels", nothing, 25),
     few("few-viscous", "viscous friction; parameters off 5 %, few channels", viscous, 26),
     few("few-load", "load of 300 N from the start on; parameters off 5 %, few channels", load, 27),
@@ -81,8 +81,7 @@ pub const CASES: &[Case] = &[
 ];
 
 const fn row(
-    name: &'static str,
-    words: &'static str,
+    [name, words]: [&'static str; 2],
     secret: fn() -> Secret,
     noise: Noise,
     off_percent: f64,
@@ -102,7 +101,7 @@ const fn row(
 const fn few(name: &'static str, words: &'static str, secret: fn() -> Secret, stream: u64) -> Case {
     Case {
         few: true,
-        ..row(name, words, secret, Noise::Loop, 5.0, stream)
+        ..row([name, words], secret, Noise::Loop, 5.0, stream)
     }
 }
 

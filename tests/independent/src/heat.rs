@@ -239,7 +239,7 @@ impl HeatedScrew {
         ];
         power[2] -= ends[0];
         power[3] -= ends[1];
-        power[4] -= self.rod(x, w, 0.5 * nut, ends, air);
+        power[4] -= self.rod([x, w], 0.5 * nut, ends, air);
         for ((body, power), capacity) in self.bodies.iter_mut().zip(power).zip(n.capacity) {
             *body += STEP * power / capacity;
         }
@@ -253,7 +253,7 @@ impl HeatedScrew {
     }
 
     /// A step of the rod; the heat that it took from the nut, W, besides the `loss` there.
-    fn rod(&mut self, x: f64, w: f64, loss: f64, ends: [f64; 2], air: f64) -> f64 {
+    fn rod(&mut self, [x, w]: [f64; 2], loss: f64, ends: [f64; 2], air: f64) -> f64 {
         let (n, d) = (self.numbers, self.axis.screw_diameter);
         let cell = self.axis.screw_length / CELLS as f64;
         let area = PI * d * d / 4.0;

@@ -102,7 +102,9 @@ pub fn log(
     };
     let hidden = (case.secret)().hidden;
     let mut samples = Vec::new();
-    run(p, &hidden, motion, &inside, random, |s| samples.push(*s))?;
+    run((p, &hidden), motion, (&inside, random), |s| {
+        samples.push(*s)
+    })?;
     let columns = if case.few { Columns::Few } else { Columns::All };
     Ok(rough.on(logger).log(&samples, columns, random))
 }

@@ -64,21 +64,12 @@ pub struct Sample {
 /// # Errors
 /// [`IndependentError::NotConverged`], [`IndependentError::OffScrew`].
 pub fn run(
-    p: &Parameters,
-    hidden: &Hidden,
+    (p, hidden): (&Parameters, &Hidden),
     motion: &Motion,
-    noise: &LoopNoise,
-    random: &mut Random,
+    noise: (&LoopNoise, &mut Random),
     each: impl FnMut(&Sample),
 ) -> Result<(), IndependentError> {
-    run_pushed(
-        p,
-        hidden,
-        motion,
-        (noise, random),
-        |_| Push::default(),
-        each,
-    )
+    run_pushed((p, hidden), motion, noise, |_| Push::default(), each)
 }
 
 /// What comes into the loop from outside in a control period.
@@ -97,8 +88,7 @@ pub struct Push {
 /// # Errors
 /// As [`run`].
 pub fn run_pushed(
-    p: &Parameters,
-    hidden: &Hidden,
+    (p, hidden): (&Parameters, &Hidden),
     motion: &Motion,
     (noise, random): (&LoopNoise, &mut Random),
     push: impl Fn(f64) -> Push,

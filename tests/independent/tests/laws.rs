@@ -10,7 +10,10 @@ fn samples(hidden: &Hidden, motion: &Motion) -> Vec<Sample> {
     let (p, mut all) = (Parameters::paper(), Vec::new());
     let noise = LoopNoise::default();
     let mut random = Random::new(1, 0);
-    run(&p, hidden, motion, &noise, &mut random, |s| all.push(*s)).unwrap();
+    run((&p, hidden), motion, (&noise, &mut random), |s| {
+        all.push(*s)
+    })
+    .unwrap();
     all
 }
 
@@ -151,7 +154,7 @@ fn the_same_seed_gives_the_same_log_and_another_another() {
         let mut random = Random::new(seed, 7);
         let (p, mut all) = (Parameters::paper(), Vec::new());
         let none = Hidden::default();
-        run(&p, &none, &motion, &LoopNoise::GOOD, &mut random, |s| {
+        run((&p, &none), &motion, (&LoopNoise::GOOD, &mut random), |s| {
             all.push(s.seen)
         })
         .unwrap();

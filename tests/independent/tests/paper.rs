@@ -10,7 +10,7 @@ fn errors(limits: [f64; 4]) -> [f64; 2] {
     let (p, mut all) = (Parameters::paper(), Vec::new());
     let (none, noise) = (Hidden::default(), LoopNoise::default());
     let mut random = Random::new(1, 0);
-    run(&p, &none, &s_curve(limits), &noise, &mut random, |s| {
+    run((&p, &none), &s_curve(limits), (&noise, &mut random), |s| {
         all.push(1e6 * (s.wanted.position - s.seen.position).abs());
     })
     .unwrap();
@@ -45,7 +45,10 @@ fn trajectory_1_is_that_of_another_program() {
     let (none, noise) = (Hidden::default(), LoopNoise::default());
     let motion = s_curve([0.3, 0.1, 0.225, 1.2]);
     let mut random = Random::new(1, 0);
-    run(&p, &none, &motion, &noise, &mut random, |s| all.push(*s)).unwrap();
+    run((&p, &none), &motion, (&noise, &mut random), |s| {
+        all.push(*s)
+    })
+    .unwrap();
     let mut worst = [0.0_f64; 4];
     for (row, sample) in reader.records().zip(all.iter().step_by(10)) {
         let row = row.unwrap();

@@ -17,24 +17,34 @@ fn parameters_are_those_of_the_axis_file() {
         };
         assert!((told * unit / own - 1.0).abs() < 1e-12, "{table}.{key}");
     };
-    same("screw", "length_mm", 1e-3, p.screw_length);
-    same("screw", "diameter_mm", 1e-3, p.screw_diameter);
-    same("screw", "lead_mm", 1e-3, p.lead);
-    same("screw", "youngs_modulus_gpa", 1e9, p.youngs_modulus);
-    same("screw", "poisson_ratio", 1.0, p.poisson_ratio);
-    same("screw", "density_kg_per_m3", 1.0, p.density);
-    same("drive", "motor_inertia_kg_m2", 1.0, p.motor_inertia);
+    same("mechanism", "length_mm", 1e-3, p.screw_length);
+    same("mechanism", "diameter_mm", 1e-3, p.screw_diameter);
+    same("mechanism", "lead_mm", 1e-3, p.lead);
+    same("mechanism", "youngs_modulus_gpa", 1e9, p.youngs_modulus);
+    same("mechanism", "poisson_ratio", 1.0, p.poisson_ratio);
+    same("mechanism", "density_kg_per_m3", 1.0, p.density);
+    same("mechanism", "motor_inertia_kg_m2", 1.0, p.motor_inertia);
     same(
-        "drive",
+        "mechanism",
         "torque_sensor_inertia_kg_m2",
         1.0,
         p.sensor_inertia,
     );
-    same("drive", "motor_coupling_n_m_per_rad", 1.0, p.motor_coupling);
-    same("drive", "screw_coupling_n_m_per_rad", 1.0, p.screw_coupling);
-    same("drive", "nut_stiffness_n_per_m", 1.0, p.nut_stiffness);
-    same("drive", "table_mass_kg", 1.0, p.table_mass);
-    same("drive", "stiffness_damping_s", 1.0, p.stiffness_damping);
+    same(
+        "mechanism",
+        "motor_coupling_n_m_per_rad",
+        1.0,
+        p.motor_coupling,
+    );
+    same(
+        "mechanism",
+        "screw_coupling_n_m_per_rad",
+        1.0,
+        p.screw_coupling,
+    );
+    same("mechanism", "nut_stiffness_n_per_m", 1.0, p.nut_stiffness);
+    same("mechanism", "table_mass_kg", 1.0, p.table_mass);
+    same("mechanism", "stiffness_damping_s", 1.0, p.stiffness_damping);
     same("friction", "coulomb_n_m", 1.0, p.coulomb);
     same("friction", "stiction_n_m", 1.0, p.stiction);
     same("friction", "stribeck_speed_rpm", RPM, p.stribeck_speed);
@@ -51,12 +61,17 @@ fn parameters_are_those_of_the_axis_file() {
         p.bristle_damping,
     );
     same("friction", "viscous_n_m_per_rpm", 1.0 / RPM, p.viscous);
-    same("motor", "pole_pairs", 1.0, p.pole_pairs);
-    same("motor", "torque_constant_n_m_per_a", 1.0, p.torque_constant);
-    same("motor", "resistance_ohm", 1.0, p.resistance);
-    same("motor", "inductance_d_mh", 1e-3, p.inductance_d);
-    same("motor", "inductance_q_mh", 1e-3, p.inductance_q);
-    same("inverter", "dc_link_v", 1.0, p.dc_link);
+    same("actuator", "pole_pairs", 1.0, p.pole_pairs);
+    same(
+        "actuator",
+        "torque_constant_n_m_per_a",
+        1.0,
+        p.torque_constant,
+    );
+    same("actuator", "resistance_ohm", 1.0, p.resistance);
+    same("actuator", "inductance_d_mh", 1e-3, p.inductance_d);
+    same("actuator", "inductance_q_mh", 1e-3, p.inductance_q);
+    same("actuator", "dc_link_v", 1.0, p.dc_link);
     same("control", "frequency_khz", 1e3, 1.0 / p.period);
     same(
         "control",
@@ -82,11 +97,11 @@ fn parameters_are_those_of_the_axis_file() {
         1.0 / RPM,
         p.speed_i,
     );
-    same("control", "current_d_proportional_v_per_a", 1.0, p.d_p);
-    same("control", "current_d_integral_v_per_a_s", 1.0, p.d_i);
-    same("control", "current_q_proportional_v_per_a", 1.0, p.q_p);
-    same("control", "current_q_integral_v_per_a_s", 1.0, p.q_i);
-    same("control", "current_limit_a", 1.0, p.current_limit);
+    same("actuator", "current_d_proportional_v_per_a", 1.0, p.d_p);
+    same("actuator", "current_d_integral_v_per_a_s", 1.0, p.d_i);
+    same("actuator", "current_q_proportional_v_per_a", 1.0, p.q_p);
+    same("actuator", "current_q_integral_v_per_a_s", 1.0, p.q_i);
+    same("actuator", "current_limit_a", 1.0, p.current_limit);
 }
 
 /// Every draw lies within the share, and friction never begins below its sliding level.

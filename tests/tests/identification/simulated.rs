@@ -2,7 +2,7 @@
 
 use axis_pipeline::identification::{IdentificationPlan, Session, identify};
 use axis_sim::Axis;
-use discover_matrix::hidden::Noise;
+use axis_sim::NoiseLevels;
 
 use super::axis;
 
@@ -11,7 +11,7 @@ fn session(axis: &Axis, seed: u64) -> Session {
         seed,
         ..IdentificationPlan::of(axis)
     };
-    let sensors = Noise::good(axis).sensors(seed);
+    let sensors = NoiseLevels::good(axis).sensors(seed);
     identify(axis, axis, &plan, sensors, || {}).unwrap()
 }
 
@@ -92,7 +92,7 @@ fn nothing_of_the_friction_in_the_file_comes_into_the_result() {
             record_time: 0.4,
             ..IdentificationPlan::of(told)
         };
-        let sensors = Noise::good(&machine).sensors(4);
+        let sensors = NoiseLevels::good(&machine).sensors(4);
         identify(&machine, told, &plan, sensors, || {})
             .unwrap()
             .found

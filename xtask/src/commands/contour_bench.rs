@@ -5,8 +5,8 @@ use std::sync::Arc;
 use axis_machine::{CoupledMachine, Coupling, DriveSensors, Laps};
 use axis_pipeline::strategies::{NONE, Predictors, STRATEGIES, StrategyKind};
 use axis_sim::Axis;
+use axis_sim::NoiseLevels;
 use compensator::DriveModel;
-use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result, miette};
 use toolpath::named::{CircleTest, Direction};
 use toolpath::{FeedLimits, FeedProfile};
@@ -89,7 +89,7 @@ pub fn series<const D: usize>(
         predictors.axis.effects.clear();
         predictors.assumed_model = models.get(d).copied().flatten();
         strategies.push(kind.strategy(&predictors).into_diagnostic()?);
-        sensors.push(Box::new(Noise::GOOD.sensors(7 + d as u64)));
+        sensors.push(Box::new(NoiseLevels::GOOD.sensors(7 + d as u64)));
     }
     let mut runner = Laps::new(machine, strategies)
         .into_diagnostic()?

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use axis_pipeline::PipelineError;
-use axis_pipeline::heat::{HeatAhead, HeatError, ModelHeat, WarmMoves, Warmth};
+use axis_pipeline::heat::{DutyHeat, HeatAhead, HeatError, ModelHeat, WarmMoves};
 use axis_pipeline::moves::NamedMotion;
 use axis_pipeline::strategies::{
     NONE, NextMove, Predictors, STRATEGIES, SharedMotion, Strategy, StrategyKind, named,
@@ -181,7 +181,7 @@ struct OtherHeat {
     with_growth: bool,
 }
 
-impl Warmth for OtherHeat {
+impl DutyHeat for OtherHeat {
     fn until(&mut self, time: f64) -> std::result::Result<(), HeatError> {
         let more = time - self.machine.time;
         if more > 0.0 {

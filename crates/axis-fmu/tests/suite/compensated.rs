@@ -218,7 +218,7 @@ fn the_plan_sees_the_beginning_of_the_motion() {
 fn a_parameter_changes_the_machine_and_not_what_the_correction_assumes() {
     let (mut unit, kind, predictors) = unit("liu2025.toml", "feedback");
     let motion = Late::of(&unit.axes()[0], 1500, unit.look_ahead());
-    set(&mut unit, "drive.table_mass_kg", 150.0);
+    set(&mut unit, "mechanism.table_mass_kg", 150.0);
     begin(&mut unit);
     let file = text("liu2025.toml");
     let line = file

@@ -194,11 +194,10 @@ fn along_a_path_controllers_see_what_they_see_in_a_run() {
     assert!(lap.records[0].len() > 3000);
 }
 
-/// Parameters of axis files and of the machine file have limits, count, and are checked.
+/// Parameters of axis files and of the machine file have limits, and count.
 #[test]
 fn parameters_of_axes_and_machine_count() {
-    let name = "liu2025-xy.toml";
-    let fresh = Unit::machine(&file(name)).unwrap();
+    let fresh = Unit::machine(&file("liu2025-xy.toml")).unwrap();
     assert_eq!(fresh.kind(), UnitKind::Machine);
     let squareness = "coupling.x_by_y.squareness_um_per_m";
     let variable = fresh.variables().named(squareness).unwrap();
@@ -243,6 +242,13 @@ fn parameters_of_axes_and_machine_count() {
     assert!((moved - 1e-3).abs() < 1e-5);
     assert!((with - 1e-3 * moved).abs() < 1e-9, "{with}");
     assert!(tool_at(0.0).0.abs() < 1e-9);
+}
+
+/// Parameters outside their limits are refused, and one of an axis file changes that axis alone.
+#[test]
+fn parameters_are_checked_and_keep_to_their_axis() {
+    let fresh = Unit::machine(&file("liu2025-xy.toml")).unwrap();
+    let squareness = "coupling.x_by_y.squareness_um_per_m";
     let refused = |name: &str, value: f64| {
         let mut unit = fresh.clone();
         set(&mut unit, name, value);

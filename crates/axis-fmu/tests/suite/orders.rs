@@ -137,7 +137,7 @@ fn values_are_set_where_they_can_be() {
         assert!(words(unit.set(reference, 0.0)).contains(&format!("0 to {last}")));
         assert!(words(unit.get(reference)).contains("value reference"));
     }
-    let fixed = at(&unit, "drive.table_mass_kg");
+    let fixed = at(&unit, "mechanism.table_mass_kg");
     assert!(words(unit.set(fixed, 500.0)).contains("fixed"));
     assert!(words(unit.set(at(&unit, "machine.position_m"), 0.5)).contains("output"));
     assert!(words(unit.set(0, 1.0)).contains("time"));

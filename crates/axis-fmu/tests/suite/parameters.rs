@@ -27,12 +27,12 @@ fn a_parameter_that_is_set_is_one_of_another_file() {
     let text = text("liu2025.toml");
     for (name, before, after, value) in [
         (
-            "drive.table_mass_kg",
+            "mechanism.table_mass_kg",
             "table_mass_kg = 515",
             "table_mass_kg = 300.0",
             300.0,
         ),
-        ("screw.lead_mm", "lead_mm = 10", "lead_mm = 12.5", 12.5),
+        ("mechanism.lead_mm", "lead_mm = 10", "lead_mm = 12.5", 12.5),
         (
             "friction.coulomb_n_m",
             "coulomb_n_m = 0.6757",
@@ -64,11 +64,11 @@ fn a_parameter_that_is_set_is_one_of_another_file() {
 #[test]
 fn parameters_may_be_set_after_outputs_were_read() {
     let [mut early, mut late] = [unit("liu2025.toml"), unit("liu2025.toml")];
-    set(&mut early, "drive.table_mass_kg", 300.0);
+    set(&mut early, "mechanism.table_mass_kg", 300.0);
     begun(&mut early);
     late.enter_initialization(0.0, None).unwrap();
     let _ = get(&mut late, "machine.position_m");
-    set(&mut late, "drive.table_mass_kg", 300.0);
+    set(&mut late, "mechanism.table_mass_kg", 300.0);
     late.exit_initialization().unwrap();
     assert_eq!(answer(&mut early), answer(&mut late));
 }
@@ -76,14 +76,14 @@ fn parameters_may_be_set_after_outputs_were_read() {
 #[test]
 fn a_value_out_of_range_is_refused_in_the_files_words() {
     let mut unit = unit("liu2025.toml");
-    set(&mut unit, "drive.table_mass_kg", -1.0);
+    set(&mut unit, "mechanism.table_mass_kg", -1.0);
     unit.enter_initialization(0.0, None).unwrap();
     let refused = unit.exit_initialization().unwrap_err().to_string();
     assert!(
         refused.contains("table_mass_kg") && refused.contains("-1"),
         "{refused}"
     );
-    set(&mut unit, "drive.table_mass_kg", 515.0);
+    set(&mut unit, "mechanism.table_mass_kg", 515.0);
     unit.exit_initialization().unwrap();
 }
 
@@ -97,7 +97,7 @@ fn what_makes_the_unit_is_no_parameter() {
         for absent in [
             "control.frequency_khz",
             "stroke.start_mm",
-            "screw.elements",
+            "mechanism.elements",
             "schema",
             "simulation.step_us",
         ] {

@@ -184,7 +184,7 @@ fn a_plant_has_no_control() {
     assert_ne!(plant.token(), unit(name).token());
     assert_eq!(UnitKind::of_token(&plant.token()), UnitKind::Plant);
     set(&mut plant, "unit.start_position_m", 0.3);
-    set(&mut plant, "drive.table_mass_kg", 300.0);
+    set(&mut plant, "mechanism.table_mass_kg", 300.0);
     plant.enter_initialization(0.0, None).unwrap();
     plant.exit_initialization().unwrap();
     assert_eq!(get(&mut plant, "machine.position_m"), 0.3);

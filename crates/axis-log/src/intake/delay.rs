@@ -34,14 +34,8 @@ pub(super) fn between(first: &Recording, other: &Recording, period: f64) -> Opti
                 start: grid.start - late,
                 ..grid
             };
-            let found = estimate(
-                a,
-                moved(grid_a, late_a),
-                b,
-                moved(grid_b, late_b),
-                period,
-                law,
-            );
+            let pair = [(a, moved(grid_a, late_a)), (b, moved(grid_b, late_b))];
+            let found = estimate(pair, period, law);
             let Some(fit) = found.filter(|f| f.correlation > SURE && f.factor > 0.0) else {
                 continue;
             };
@@ -100,15 +94,8 @@ fn quantity(name: &str) -> Option<(String, bool, i32)> {
     Some((stem.replace(word, "*"), turns, order))
 }
 
-/// How late b is against a, in periods of a common grid.
-fn estimate(
-    a: &Channel,
-    at_a: Even,
-    b: &Channel,
-    at_b: Even,
-    period: f64,
-    law: Law,
-) -> Option<Fit> {
+/// How late the second channel is against the first, each with its instants, in periods of a common grid.
+fn estimate([(a, at_a), (b, at_b)]: [(&Channel, Even); 2], period: f64, law: Law) -> Option<Fit> {
     let end = |grid: Even, c: &Channel| grid.start + (c.samples.len() - 1) as f64 * grid.period;
     let from = at_a.start.max(at_b.start);
     let to = end(at_a, a).min(end(at_b, b));

@@ -2,10 +2,8 @@
 
 use std::fmt;
 
-use crate::error::clip;
 use crate::plus_minus::PlusMinus;
-use crate::table::{Note, OtherUnit};
-use crate::unit::unit_of;
+use crate::table::Note;
 
 /// The delay of one file's clock against another's, found from their channels.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,69 +18,22 @@ pub struct FileDelay {
     pub correlation: f64,
 }
 
+impl FileDelay {
+    fn milliseconds(&self) -> PlusMinus {
+        PlusMinus::new(1e3 * self.delay, 1e3 * self.standard_error, 4)
+    }
+}
+
 /// Something that was done to a log, or could not be.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Done {
-    /// A file without names: its first row holds numbers, and is data.
-    NoNames {
+    /// What had to be assumed or left out to read a file.
+    Read {
         /// The file.
         file: String,
-        /// Its columns, which are called `column 1` and so on.
-        columns: usize,
-    },
-    /// Lines above the names of a text, which were passed over.
-    Titles {
-        /// The file.
-        file: String,
-        /// The lines.
-        lines: Vec<String>,
-    },
-    /// A file whose last row has no line end; it was taken as a row.
-    NoLineEnd {
-        /// The file.
-        file: String,
-    },
-    /// Rows that the program left out because nothing changed; the values were held.
-    Held {
-        /// The file.
-        file: String,
-        /// Rows.
-        rows: usize,
-    },
-    /// A column whose mapping states no unit; it was read in that which the file states.
-    UnitOfFile {
-        /// The file.
-        file: String,
-        /// The column.
-        column: String,
-        /// Its unit.
-        unit: String,
-    },
-    /// A column that its mapping reads in another unit than that which the file states.
-    OtherUnit {
-        /// The file.
-        file: String,
-        /// The column.
-        what: OtherUnit,
-    },
-    /// A column that the mapping names and the file has not.
-    NoColumn {
-        /// The file.
-        file: String,
-        /// The column.
-        column: String,
-        /// Those that there are.
-        there: Vec<String>,
-    },
-    /// Rows that were there twice, the same in every column; taken once.
-    Repeated {
-        /// The file.
-        file: String,
-        /// Rows that were dropped.
-        rows: usize,
-        /// Time of the first, s.
-        first: f64,
+        /// What.
+        note: Note,
     },
     /// An angle or a counter that began anew after a turn or after all its bits; it goes on.
     Unwrapped {
@@ -213,75 +164,9 @@ pub enum Done {
 }
 
 impl Done {
-    /// What a file says of itself.
-    pub(super) fn of(note: Note, file: String) -> Self {
-        match note {
-            Note::NoNames { columns } => Self::NoNames { file, columns },
-            Note::Titles { lines } => Self::Titles { file, lines },
-            Note::NoLineEnd => Self::NoLineEnd { file },
-            Note::Held { rows } => Self::Held { file, rows },
-            Note::UnitOfFile { column, unit } => Self::UnitOfFile { file, column, unit },
-            Note::OtherUnit(what) => Self::OtherUnit { file, what },
-            Note::NoColumn { column, there } => Self::NoColumn {
-                file,
-                column,
-                there,
-            },
-            Note::Repeated { rows, first } => Self::Repeated { file, rows, first },
-        }
-    }
-}
-
-impl fmt::Display for Done {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    /// What was done to single samples of a channel.
+    fn fmt_samples(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoNames { file, columns } => write!(
-                f,
-                "{file}: its first row holds numbers, so it is data and there are no names; the columns are called \"column 1\" to \"column {columns}\""
-            ),
-            Self::Titles { file, lines } => write!(
-                f,
-                "{file}: {} passed over, as the names for its rows stand below: {}",
-                match lines.len() {
-                    1 => "its first line was".to_owned(),
-                    many => format!("its first {many} lines were"),
-                },
-                clip(&lines.join(" | "))
-            ),
-            Self::NoLineEnd { file } => write!(
-                f,
-                "{file}: its last row has no line end; it was taken as it stands, and if the file was cut there, its last number may be too"
-            ),
-            Self::Held { file, rows } => write!(
-                f,
-                "{file}: {rows} rows that the control left out because nothing changed; the last values are held there"
-            ),
-            Self::UnitOfFile { file, column, unit } => write!(
-                f,
-                "{file}: column \"{column}\" is read in {unit}, the unit that the file states, as its mapping states none (unit or factor)"
-            ),
-            Self::OtherUnit { file, what } => {
-                let [stated, taken] = what.scales;
-                let of_channel = unit_of(&what.channel).unwrap_or_default();
-                let (column, unit) = (&what.column, &what.unit);
-                write!(
-                    f,
-                    "{file}: column \"{column}\": the file states {unit} ({stated} {of_channel}), and its mapping takes 1 of it for {taken} {of_channel}; it is read as the mapping says"
-                )
-            }
-            Self::NoColumn {
-                file,
-                column,
-                there,
-            } => write!(
-                f,
-                "{file}: the mapping names a column \"{column}\" (source), which is not there; the file has: {}",
-                there.join(", ")
-            ),
-            Self::Repeated { file, rows, first } => write!(
-                f,
-                "{file}: {rows} row(s) occur twice, the first at t = {first:.4} s; each is read once"
-            ),
             Self::Unwrapped {
                 channel,
                 period,
@@ -290,46 +175,6 @@ impl fmt::Display for Done {
             } => write!(
                 f,
                 "{channel}: it wraps around after {period:.6} {unit}, {jumps} time(s); unwrapped"
-            ),
-            Self::Shifted {
-                file,
-                rows,
-                jitter,
-                rate,
-            } => {
-                let (count, way) = match *rows < 0 {
-                    true => (-rows, "before"),
-                    false => (*rows, "behind"),
-                };
-                write!(
-                    f,
-                    "{file}: time stamps up to {:.0} % of a period off an even grid, and so were the samples, {count} row {way} their stamps; interpolated to {rate:.4} Hz",
-                    100.0 * jitter
-                )
-            }
-            Self::Rows { file, rows, gaps } => {
-                write!(
-                    f,
-                    "{file}: {rows} rows missing in {gaps} place(s); inserted without values"
-                )
-            }
-            Self::Interpolated { file, jitter, rate } => write!(
-                f,
-                "{file}: time stamps up to {:.0} % of a period off an even grid, and so were the samples; interpolated to {rate:.4} Hz",
-                100.0 * jitter
-            ),
-            Self::Evened { file, jitter, rate } => write!(
-                f,
-                "{file}: time stamps up to {:.0} % of a period off an even grid, the samples not; taken as even at {rate:.4} Hz",
-                100.0 * jitter
-            ),
-            Self::Slowed {
-                file,
-                samples,
-                rates: [from, to],
-            } => write!(
-                f,
-                "{file}: {samples} samples at {from:.4} Hz; resampled to {to:.4} Hz, as so long a log needs no more"
             ),
             Self::Outliers {
                 channel,
@@ -349,6 +194,70 @@ impl fmt::Display for Done {
             } => write!(
                 f,
                 "{channel}: {samples} sample(s) without a value, at most {longest} in a row (from t = {at:.4} s); interpolated there by a straight line, with zero weight"
+            ),
+            _ => Ok(()),
+        }
+    }
+
+    /// What was done about uneven time stamps.
+    fn fmt_uneven(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (file, jitter, rate, samples) = match self {
+            Self::Shifted {
+                file,
+                rows,
+                jitter,
+                rate,
+            } => {
+                let side = if *rows < 0 { "before" } else { "behind" };
+                let rows = rows.unsigned_abs();
+                let samples = format!(
+                    "and so were the samples, {rows} row {side} their stamps; interpolated to"
+                );
+                (file, jitter, rate, samples)
+            }
+            Self::Interpolated { file, jitter, rate } => (
+                file,
+                jitter,
+                rate,
+                "and so were the samples; interpolated to".to_owned(),
+            ),
+            Self::Evened { file, jitter, rate } => (
+                file,
+                jitter,
+                rate,
+                "the samples not; taken as even at".to_owned(),
+            ),
+            _ => return Ok(()),
+        };
+        write!(
+            f,
+            "{file}: time stamps up to {:.0} % of a period off an even grid, {samples} {rate:.4} Hz",
+            100.0 * jitter
+        )
+    }
+}
+
+impl fmt::Display for Done {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Read { file, note } => write!(f, "{file}: {note}"),
+            Self::Unwrapped { .. } | Self::Outliers { .. } | Self::Bridged { .. } => {
+                self.fmt_samples(f)
+            }
+            Self::Shifted { .. } | Self::Interpolated { .. } | Self::Evened { .. } => {
+                self.fmt_uneven(f)
+            }
+            Self::Rows { file, rows, gaps } => write!(
+                f,
+                "{file}: {rows} rows missing in {gaps} place(s); inserted without values"
+            ),
+            Self::Slowed {
+                file,
+                samples,
+                rates: [from, to],
+            } => write!(
+                f,
+                "{file}: {samples} samples at {from:.4} Hz; resampled to {to:.4} Hz, as so long a log needs no more"
             ),
             Self::Delayed { channel, delay } => {
                 write!(
@@ -372,7 +281,7 @@ impl fmt::Display for Done {
             Self::Aligned { file, found } => write!(
                 f,
                 "{file}: its clock is {} ms late ({} against {}, correlation {:.4}); corrected",
-                PlusMinus::new(1e3 * found.delay, 1e3 * found.standard_error, 4),
+                found.milliseconds(),
                 found.channels[1],
                 found.channels[0],
                 found.correlation
@@ -380,7 +289,7 @@ impl fmt::Display for Done {
             Self::DelayDiffers { file, found } => write!(
                 f,
                 "{file}: after its delay_ms it is {} ms late ({} against {}); left unchanged",
-                PlusMinus::new(1e3 * found.delay, 1e3 * found.standard_error, 4),
+                found.milliseconds(),
                 found.channels[1],
                 found.channels[0]
             ),

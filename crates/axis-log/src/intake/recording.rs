@@ -57,11 +57,14 @@ impl Recording {
         let read = read(path, mapping, required, Holes::Kept).map_err(refused)?;
         let map = |c: &Channel| read.maps.iter().find(|m| m.channel == c.name);
         let delay = |c: &Channel| map(c).map_or(0.0, |m| m.delay);
-        let told = |note| Done::of(note, name.clone());
+        let of_file = |note| Done::Read {
+            file: name.clone(),
+            note,
+        };
         // Of several files each has some of the columns.
         let is_told = |note: &Note| is_alone || !matches!(note, Note::NoColumn { .. });
         let notes = read.notes.into_iter().filter(is_told);
-        let mut done: Vec<Done> = notes.map(told).collect();
+        let mut done: Vec<Done> = notes.map(of_file).collect();
         let mut channels = read.channels;
         let scale = |c: &Channel| map(c).map_or(1.0, |m| m.scale);
         done.extend(unwrapped(&mut channels, scale));

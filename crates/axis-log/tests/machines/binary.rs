@@ -128,11 +128,8 @@ fn structure(size: [u32; 2], name: &str, fields: &[&str], arrays: &[Vec<u8>]) ->
     array(2, size, name, &[head, arrays.to_vec()].concat())
 }
 
-#[test]
-fn signals_of_structs_matrices_and_cells_are_offered_by_their_path() {
-    let time: Vec<f64> = (0..50).map(|k| 0.002 * f64::from(k)).collect();
-    // Three axes side by side; column by column in the file.
-    let q: Vec<f64> = (0..150).map(f64::from).collect();
+/// Structs, a matrix, cells and a text, of 50 instants and three signals one behind the other.
+fn nested(time: &[f64], q: &[f64]) -> Vec<u8> {
     let text = array(4, [1, 2], "", &[element(4, &[b'o', 0, b'k', 0])]);
     let inner = structure([1, 1], "", &["iq"], &[doubles([50, 1], "", &q[..50])]);
     let data = structure(
@@ -140,8 +137,8 @@ fn signals_of_structs_matrices_and_cells_are_offered_by_their_path() {
         "data",
         &["t", "q", "note", "sub", "none"],
         &[
-            doubles([50, 1], "", &time),
-            doubles([50, 3], "", &q),
+            doubles([50, 1], "", time),
+            doubles([50, 3], "", q),
             text,
             inner,
             element(14, &[]),
@@ -152,7 +149,7 @@ fn signals_of_structs_matrices_and_cells_are_offered_by_their_path() {
         "run",
         &["x"],
         &[
-            doubles([1, 50], "", &time),
+            doubles([1, 50], "", time),
             doubles([1, 50], "", &q[50..100]),
         ],
     );
@@ -160,31 +157,41 @@ fn signals_of_structs_matrices_and_cells_are_offered_by_their_path() {
         1,
         [2, 1],
         "c",
-        &[doubles([50, 1], "", &time), doubles([50, 1], "", &q[100..])],
+        &[doubles([50, 1], "", time), doubles([50, 1], "", &q[100..])],
     );
     // Rows are longer: each is a signal.
     let flat = doubles([2, 50], "flat", &q[..100]);
-    let whole = [data, runs, cells, flat].concat();
-    // Each array is deflated by itself.
-    for compressed in [false, true] {
-        let mut bytes = [&[b' '; 124][..], &[0, 1, b'I', b'M']].concat();
-        let mut rest = &whole[..];
-        while !rest.is_empty() {
-            let length = u32::from_le_bytes(rest[4..8].try_into().unwrap()) as usize;
-            let (one, after) = rest.split_at(8 + length.next_multiple_of(8));
-            match compressed {
-                false => bytes.extend(one),
-                true => {
-                    let small = miniz_oxide::deflate::compress_to_vec_zlib(one, 6);
-                    bytes.extend(
-                        [15_u32.to_le_bytes(), (small.len() as u32).to_le_bytes()].concat(),
-                    );
-                    bytes.extend(small);
-                }
+    [data, runs, cells, flat].concat()
+}
+
+/// A file of arrays, each deflated by itself or not.
+fn file_of(arrays: &[u8], compressed: bool) -> Vec<u8> {
+    let mut bytes = [&[b' '; 124][..], &[0, 1, b'I', b'M']].concat();
+    let mut rest = arrays;
+    while !rest.is_empty() {
+        let length = u32::from_le_bytes(rest[4..8].try_into().unwrap()) as usize;
+        let (one, after) = rest.split_at(8 + length.next_multiple_of(8));
+        match compressed {
+            false => bytes.extend(one),
+            true => {
+                let small = miniz_oxide::deflate::compress_to_vec_zlib(one, 6);
+                bytes.extend([15_u32.to_le_bytes(), (small.len() as u32).to_le_bytes()].concat());
+                bytes.extend(small);
             }
-            rest = after;
         }
-        let given = given("log.mat", bytes);
+        rest = after;
+    }
+    bytes
+}
+
+#[test]
+fn signals_of_structs_matrices_and_cells_are_offered_by_their_path() {
+    let time: Vec<f64> = (0..50).map(|k| 0.002 * f64::from(k)).collect();
+    // Three axes side by side; column by column in the file.
+    let q: Vec<f64> = (0..150).map(f64::from).collect();
+    let whole = nested(&time, &q);
+    for compressed in [false, true] {
+        let given = given("log.mat", file_of(&whole, compressed));
         let mapped = mapping(
             &[
                 ("data.t", "t_s", 1.0),

@@ -13,32 +13,50 @@ use super::units::Units;
 /// own drive. What is no number on this axis (a ratio to an inertia of 0) is left out.
 pub fn terms(axis: &Axis, of: &DriveTerms) -> Vec<Term> {
     let u = Units::of(axis);
-    let per = |a: &str, b: &str| match b.contains('/') {
+    let parts = [
+        inertias(&u, of),
+        sliding(&u, of),
+        reversal(&u, of),
+        mid_stroke(&u, of),
+    ];
+    let lines = parts.into_iter().flatten().map(Term::from);
+    let all = lines.chain(gains(axis));
+    placed(axis, all.filter(|t| t.drive_value.is_finite()))
+}
+
+/// The unit `a` per `b`.
+fn per(a: &str, b: &str) -> String {
+    match b.contains('/') {
         true => format!("{a}/({b})"),
         false => format!("{a}/{b}"),
-    };
-    let (r, k) = (of.travel, of.torque_constant);
-    let [least, most] = of.along.ends();
-    let row = of.row(0.5 * (least + most));
-    let same = |unit: &str| (1.0, unit.to_owned());
-    let scaled = |(factor, unit): (f64, &str)| (factor, unit.to_owned());
-    let [acceleration, jerk] = ["s²", "s³"].map(|s| format!("{}/{s}", u.load));
-    let speed = format!("{}/s", u.angle);
-    let micro = format!("µ{}", u.load);
-    let feeding = per(u.effort, &acceleration);
+    }
+}
+
+/// A unit that drives use too.
+fn same(unit: &str) -> (f64, String) {
+    (1.0, unit.to_owned())
+}
+
+/// A factor, and the unit of drives that it leads to.
+fn scaled((factor, unit): (f64, &str)) -> (f64, String) {
+    (factor, unit.to_owned())
+}
+
+/// What the references' speed and acceleration need: lever, torque constant, inertias, feed-forward.
+fn inertias(u: &Units, of: &DriveTerms) -> Vec<Line> {
+    let feeding = per(u.effort, &u.per_time("s²"));
     let share = (100.0, "%".to_owned());
-    let ms = (1e3, "ms".to_owned());
-    let list: [Line; 24] = [
+    vec![
         (
             "travel_per_motor_angle",
-            r,
+            of.travel,
             per(u.load, u.angle),
             scaled(u.turn),
             "travel of the load per angle of the motor",
         ),
         (
             "torque_constant",
-            k,
+            of.torque_constant,
             per(u.torque, u.effort),
             same(&per(u.torque, u.effort)),
             "torque of the motor per command",
@@ -92,17 +110,24 @@ pub fn terms(axis: &Axis, of: &DriveTerms) -> Vec<Term> {
             share,
             "the part of it that the axis file's drive does not have yet",
         ),
+    ]
+}
+
+/// Friction while the axis slides.
+fn sliding(u: &Units, of: &DriveTerms) -> Vec<Line> {
+    let (r, k) = (of.travel, of.torque_constant);
+    vec![
         (
             "viscous_friction",
             of.viscous,
-            per(u.torque, &speed),
+            per(u.torque, &u.motor_speed()),
             scaled(u.viscous),
             "friction torque per speed of the motor",
         ),
         (
             "viscous_command",
             of.viscous / (r * k),
-            per(u.effort, &format!("{}/s", u.load)),
+            per(u.effort, &u.per_time("s")),
             (1.0 / u.feed.0, per(u.effort, u.feed.1)),
             "command per speed of the load",
         ),
@@ -120,6 +145,15 @@ pub fn terms(axis: &Axis, of: &DriveTerms) -> Vec<Term> {
             same(u.effort),
             "command for it",
         ),
+    ]
+}
+
+/// What friction does after a start or a change of direction.
+fn reversal(u: &Units, of: &DriveTerms) -> Vec<Line> {
+    let (r, k) = (of.travel, of.torque_constant);
+    let ms = (1e3, "ms".to_owned());
+    let speed = u.motor_speed();
+    vec![
         (
             "reversal_delay",
             of.pulse.delay,
@@ -162,6 +196,18 @@ pub fn terms(axis: &Axis, of: &DriveTerms) -> Vec<Term> {
             scaled(u.speed),
             "pulse on the motor's speed that winds the transmission up while friction rises to the new level, after a start, with the same decay; for a position loop closed at the load",
         ),
+    ]
+}
+
+/// What differs along the stroke, in its middle: constant loads, wind-up, lost motion.
+fn mid_stroke(u: &Units, of: &DriveTerms) -> Vec<Line> {
+    let k = of.torque_constant;
+    let [least, most] = of.along.ends();
+    let row = of.row(0.5 * (least + most));
+    let [acceleration, jerk] = ["s²", "s³"].map(|s| u.per_time(s));
+    let speed = u.motor_speed();
+    let micro = format!("µ{}", u.load);
+    vec![
         (
             "standing_load",
             of.standing,
@@ -197,9 +243,7 @@ pub fn terms(axis: &Axis, of: &DriveTerms) -> Vec<Term> {
             (1e6, micro),
             "travel lost to wind-up by friction from one direction to the other, at mid-stroke; for a position loop closed at the motor",
         ),
-    ];
-    let list = list.into_iter().map(Term::from).chain(gains(axis));
-    placed(axis, list.filter(|t| t.drive_value.is_finite()))
+    ]
 }
 
 /// Gains and filters of the axis file's own drive alone.

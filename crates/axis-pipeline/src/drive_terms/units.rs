@@ -22,6 +22,15 @@ pub(super) struct Units {
 }
 
 impl Units {
+    /// That of the load's position per a unit of time or a power of one.
+    pub fn per_time(&self, time: &str) -> String {
+        format!("{}/{time}", self.load)
+    }
+
+    pub fn motor_speed(&self) -> String {
+        format!("{}/s", self.angle)
+    }
+
     pub fn of(axis: &Axis) -> Self {
         const RPM: f64 = 30.0 / PI;
         let load = axis.freedom().unit();

@@ -21,7 +21,7 @@ pub use ahead::HeatAhead;
 pub use follow::{FollowOptions, FollowedRow, Following, follow};
 pub use identify::{HeatFit, HeldOut, fit};
 pub use slow_log::{SlowLog, SlowLogOptions, probe_of, zero_of};
-pub use warm_moves::{ModelHeat, WarmMoves, Warmth, warm_axis};
+pub use warm_moves::{DutyHeat, ModelHeat, WarmMoves, warm_axis};
 
 /// Why a slow log or its model was refused.
 #[derive(Debug, Error)]

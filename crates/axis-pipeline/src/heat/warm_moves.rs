@@ -23,8 +23,8 @@ use crate::strategies::{SharedMotion, Strategy};
 /// Time in which a drive has come to where it is led, s.
 const SETTLED: f64 = 1.0;
 
-/// What warms up under a duty that repeats itself.
-pub trait Warmth {
+/// Heat of an axis under a duty that repeats itself: friction and growth over time.
+pub trait DutyHeat {
     /// Goes on until so many seconds since the begin.
     ///
     /// # Errors
@@ -108,7 +108,7 @@ impl ModelHeat {
     }
 }
 
-impl Warmth for ModelHeat {
+impl DutyHeat for ModelHeat {
     fn until(&mut self, time: f64) -> Result<(), HeatError> {
         let more = time - self.now.time;
         if more > 0.0 {
@@ -169,7 +169,7 @@ impl WarmMoves {
     /// time before has ended.
     pub fn new(
         machine: &Axis,
-        warmth: &mut dyn Warmth,
+        heat: &mut dyn DutyHeat,
         after: &[f64],
         pass: f64,
     ) -> Result<Self, PipelineError> {
@@ -183,12 +183,12 @@ impl WarmMoves {
             grown: Vec::new(),
         };
         for time in after {
-            warmth.until(*time)?;
-            let before = warmth.friction()?;
-            let mut grown = HeatAhead::constant(machine, |x| warmth.growth(x), before);
-            warmth.until(time + pass)?;
-            let after = warmth.friction()?;
-            grown.push(pass, |x| warmth.growth(x), after);
+            heat.until(*time)?;
+            let before = heat.friction()?;
+            let mut grown = HeatAhead::constant(machine, |x| heat.growth(x), before);
+            heat.until(time + pass)?;
+            let after = heat.friction()?;
+            grown.push(pass, |x| heat.growth(x), after);
             warm.grown.push(grown);
             // Friction changes by some thousandths in a pass.
             let mean = [0, 1].map(|i| 0.5 * (before[i] + after[i]));
@@ -205,6 +205,7 @@ impl WarmMoves {
     ///
     /// # Errors
     /// As [`Moves::make`], and if the model's heat does not settle.
+    #[expect(clippy::too_many_arguments, reason = "two of the five are closures")]
     pub fn run(
         &self,
         strategy: &mut dyn Strategy,

@@ -44,14 +44,14 @@ const BEYOND: f64 = 2.5;
 const REACH: f64 = 0.2;
 
 impl IdentificationPlan {
-    /// In proportion to an axis: from 0.2 to 300 mm/s on the paper's.
+    /// In proportion to an axis: from 0.2 to 300 mm/s on a stroke of 1.5 m.
     pub fn of(axis: &Axis) -> Self {
         let scales = Scales::of(axis);
         let stroke = axis.stroke.maximum - axis.stroke.minimum;
         let trajectories = axis.trajectories.iter().map(|t| t.limits.velocity());
         let fastest = trajectories.reduce(f64::max).unwrap_or(REACH * stroke);
         let fastest = (BEYOND * fastest).min(REACH * stroke);
-        // Ramps of 2 m/s² and 50 m/s³ up to 0.3 m/s on the paper's axis: 0.15 s up, 0.27 of that
+        // On a stroke of 1.5 m ramps of 2 m/s² and 50 m/s³ up to 0.3 m/s: 0.15 s up, 0.27 of that
         // for the jerk; no more than the actuator has the force for.
         let acceleration = (fastest / 0.15).min(2.0 * scales.ratio(Measure::Acceleration));
         let jerk = acceleration / 0.04;

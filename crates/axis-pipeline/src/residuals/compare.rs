@@ -53,8 +53,8 @@ impl ResidualMethod {
     }
 }
 
-/// One machine, the model of it, and its moves.
-pub struct Contest {
+/// What residual models are compared on: one machine, its model and its moves.
+pub struct ResidualComparison {
     assumed_model: DriveModel,
     machine: Axis,
     named: Vec<ActiveEffect>,
@@ -83,12 +83,12 @@ pub struct Compared {
 ///
 /// # Errors
 /// [`PipelineError`] if the axis has no trajectories or no plan can be made of it.
-pub fn contests(
+pub fn comparisons(
     axis: &Axis,
     machine: &Axis,
     seed: u64,
     count: usize,
-) -> Result<Vec<Contest>, PipelineError> {
+) -> Result<Vec<ResidualComparison>, PipelineError> {
     let truth = machine.drive_model()?;
     let motions: Vec<NamedMotion> = plan_all(axis)?
         .into_iter()
@@ -101,7 +101,7 @@ pub fn contests(
         let assumed_model = wrong_model(&truth, WRONG, &mut random)?;
         let programs = (0..PROGRAMS)
             .map(|k| random_program(&format!("program {}", k + 1), room(axis), &mut random));
-        Ok(Contest {
+        Ok(ResidualComparison {
             assumed_model,
             machine: drawn.machine,
             named: drawn.named,
@@ -126,12 +126,12 @@ pub fn contests(
 /// [`PipelineError`] if a move does not come to its end.
 pub fn compare(
     axis: &Axis,
-    contests: &[Contest],
+    comparisons: &[ResidualComparison],
     network: &NetworkBasis,
     sense: Sense<'_>,
     each: impl Fn() + Sync,
 ) -> Result<Vec<Vec<Compared>>, PipelineError> {
-    let all: Vec<(&Contest, ResidualMethod)> = contests
+    let all: Vec<(&ResidualComparison, ResidualMethod)> = comparisons
         .iter()
         .flat_map(|contest| ResidualMethod::ALL.map(|method| (contest, method)))
         .collect();
@@ -147,7 +147,7 @@ pub fn compare(
         .collect())
 }
 
-impl Contest {
+impl ResidualComparison {
     fn learner(
         &self,
         axis: &Axis,

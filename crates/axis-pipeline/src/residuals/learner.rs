@@ -1,7 +1,8 @@
 //! One learner, whatever it learns.
 
 use compensator::{
-    NetworkBasis, Residual, ResidualAt, ResidualLearner, ResidualModel, ResidualNetwork, Rest,
+    NetworkBasis, Residual, ResidualAt, ResidualLearner, ResidualModel, ResidualNetwork,
+    UnexplainedTorque,
 };
 
 use super::named::{NamedEffects, NamedResidual};
@@ -31,7 +32,7 @@ pub enum AnyResidual {
 impl AnyLearner {
     /// Judges it by what is left of a move that nothing has learned from, by parameters beside
     /// it and by parameters `alone`: the share of the latter that it explains.
-    pub fn judge(&mut self, beside: &Rest, alone: &Rest) -> f64 {
+    pub fn judge(&mut self, beside: &UnexplainedTorque, alone: &UnexplainedTorque) -> f64 {
         let (spacing, smoothing) = (beside.spacing, beside.smoothing);
         let (beside, alone) = (&beside.instants, &alone.instants);
         match self {
@@ -42,7 +43,7 @@ impl AnyLearner {
     }
 
     /// Fits it to what the parameters beside it leave of a move.
-    pub fn fit(&mut self, rest: &Rest) {
+    pub fn fit(&mut self, rest: &UnexplainedTorque) {
         let (log, spacing, smoothing) = (&rest.instants, rest.spacing, rest.smoothing);
         match self {
             Self::Tables(learner) => learner.fit(log, spacing, smoothing),

@@ -11,7 +11,9 @@ mod learner;
 mod named;
 mod network;
 
-pub use compare::{AFTER, Compared, Contest, PROGRAMS, ResidualMethod, compare, contests};
+pub use compare::{
+    AFTER, Compared, PROGRAMS, ResidualComparison, ResidualMethod, compare, comparisons,
+};
 pub use drawn::{DrawnMachine, drawn_effects, drawn_machine};
 pub use learner::{AnyLearner, AnyResidual};
 pub use named::{NamedEffects, NamedResidual};

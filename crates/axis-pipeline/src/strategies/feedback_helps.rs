@@ -38,21 +38,21 @@ fn changes(model: &DriveModel) -> Vec<Vec<Change>> {
         (words, changed)
     };
     let mut all = Vec::new();
-    let every = model.cascade.passage.position_every;
+    let every = model.cascade.signal_path.position_every;
     if every > 1 {
         let rate = SixDigits(1e-3 / model.period);
         all.push(vec![with(
             format!("the position controller at the rate of the control ({rate} kHz)"),
-            &|m| m.cascade.passage.position_every = 1,
+            &|m| m.cascade.signal_path.position_every = 1,
         )]);
     }
-    if model.cascade.passage.speed_every > 1 {
+    if model.cascade.signal_path.speed_every > 1 {
         let rate = SixDigits(1e-3 / model.period);
         all.push(vec![with(
             format!("both controllers at the rate of the control ({rate} kHz)"),
             &|m| {
-                m.cascade.passage.speed_every = 1;
-                m.cascade.passage.position_every = 1;
+                m.cascade.signal_path.speed_every = 1;
+                m.cascade.signal_path.position_every = 1;
             },
         )]);
     }

@@ -28,7 +28,7 @@ mod transfer_function_lugre;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use compensator::{Compensator, Correction, Homed, LearnedMove, Sample};
+use compensator::{Compensator, Correction, HomedAt, LearnedMove, Sample};
 use trajectories::Motion;
 
 use crate::PipelineError;
@@ -136,7 +136,7 @@ pub struct Continued {
     pub own: Correction,
     /// How the axis stood when it was settled: where a position loop that is closed at the
     /// motor was homed.
-    pub homed: Homed,
+    pub homed: HomedAt,
 }
 
 /// A motion that several may hold.
@@ -161,11 +161,11 @@ impl Strategy for EachAlike {
 /// The table of a report that shows a strategy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReportTable {
-    /// Table 16 of the paper: without friction feed-forward.
+    /// Corrections alone.
     WithoutFrictionFeedforward,
-    /// Table 15 of the paper: with friction feed-forward.
+    /// Corrections on top of friction feed-forward.
     WithFrictionFeedforward,
-    /// More strategies, which the paper does not have.
+    /// All others.
     More,
 }
 

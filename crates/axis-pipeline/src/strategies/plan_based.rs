@@ -11,8 +11,8 @@ use std::sync::Arc;
 use axis_sim::Axis;
 use compensator::{
     AdaptError, AdaptPrior, Adaptation, Compensator, DriveModel, Feedback, FeedbackDesign,
-    FeedbackSettings, LearnedMove, LearningSettings, PlanWithFeedback, ResidualLearner, Rest,
-    Sample,
+    FeedbackSettings, LearnedMove, LearningSettings, PlanWithFeedback, ResidualLearner, Sample,
+    UnexplainedTorque,
 };
 use trajectories::Motion;
 
@@ -240,7 +240,7 @@ impl ResidualModel {
         &self,
         record: &[Sample],
         residual: Option<&mut AnyResidual>,
-    ) -> Result<Rest, AdaptError> {
+    ) -> Result<UnexplainedTorque, AdaptError> {
         match residual {
             Some(residual) => self.adaptation.unexplained_beside(record, residual),
             None => self.adaptation.unexplained(record),

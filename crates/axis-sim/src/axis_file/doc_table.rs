@@ -73,12 +73,13 @@ fn kinds<P: ?Sized>(sections: &str, kinds: &[&'static PartKind<P>], text: &mut S
 /// What belongs to no part, of the kinds that a file's sections may name first.
 fn own() -> String {
     let registry = Registry::default();
-    let layout = Layout::sections(
-        named(&registry.mechanisms, "rack").unwrap(),
-        named(&registry.actuators, "pmsm-foc").unwrap(),
-        named(&registry.controls, "p-pi").unwrap(),
-        named(&registry.frictions, "lugre").unwrap(),
-    );
+    let layout = Layout {
+        mechanism: named(&registry.mechanisms, "rack").unwrap(),
+        actuator: named(&registry.actuators, "pmsm-foc").unwrap(),
+        control: named(&registry.controls, "p-pi").unwrap(),
+        friction: named(&registry.frictions, "lugre").unwrap(),
+        loads: Vec::new(),
+    };
     let mut lines = Vec::new();
     let parts = ["mechanism", "actuator", "friction", "tolerances"];
     for key in keys(&layout, Freedom::Linear, Effort::Current) {

@@ -10,9 +10,8 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{AxisFileError, Source};
-use super::first_keys::first_keys;
 use super::slips::{list, unknown_key, unknown_word};
-use crate::part::{Key, Kind, PartError, Values};
+use crate::part::{Key, Kind, PartError, Values, count};
 
 /// Canonical record of what was read: `path = value in SI`, for the fingerprint.
 pub(super) type Record = Rc<RefCell<Vec<String>>>;
@@ -32,8 +31,13 @@ pub(super) struct Fields<'a> {
     record: Record,
 }
 
+/// The version of a file's layout: 1 had no sections for parts.
+pub(super) const SCHEMA: Key = count("schema", 2, 2);
+
+const FIRST: &[Key] = &[SCHEMA];
+
 impl<'a> Fields<'a> {
-    /// The file itself, of which only the kind can be read as yet.
+    /// The file itself, of which only the version can be read as yet.
     pub(super) fn root(
         source: &'a Source,
         table: &'a Spanned<DeTable<'a>>,
@@ -44,7 +48,7 @@ impl<'a> Fields<'a> {
             path: String::new(),
             span: table.span(),
             table: table.get_ref(),
-            keys: Cow::Owned(first_keys()),
+            keys: Cow::Borrowed(FIRST),
             record,
         }
     }

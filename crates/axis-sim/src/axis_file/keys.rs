@@ -5,42 +5,24 @@
 //! keep a slip of the pen (a wrong unit, an exponent too many) from turning into a run
 //! without an end or into numbers that no longer resolve.
 
-use super::first_keys::{SHORT_KINDS, loop_keys};
+use super::fields::SCHEMA;
 use super::layout::Layout;
+use super::loop_keys::loop_keys;
 use crate::actuator::Effort;
 use crate::freedom::Freedom;
 use crate::part::units::*;
-use crate::part::{Key, count, number, quantity, table, tables, text, text_of, word};
+use crate::part::{Key, number, quantity, table, tables, text, text_of, word};
 use crate::rating::rating_keys;
 use crate::thermal::THERMAL_KEYS;
 
-/// The version of a file's layout: 2 has a section for each part.
-fn schema(layout: &Layout) -> u32 {
-    if layout.has_sections() { 2 } else { 1 }
-}
-
 /// All keys of a file whose parts are of these kinds.
 pub(super) fn keys(layout: &Layout, freedom: Freedom, effort: Effort) -> Vec<Key> {
-    let mut keys = vec![
-        count("schema", schema(layout), schema(layout)),
-        text("name"),
-        text("description").optional(),
-    ];
-    if !layout.has_sections() {
-        keys.push(word("kind", &SHORT_KINDS).optional());
-    }
-    keys.extend(layout.tables(&[("control", loop_keys(freedom))]));
-    let simulation = match layout.has_sections() {
-        true => METHODS,
-        false => COUPLINGS,
-    };
+    let mut keys = vec![SCHEMA, text("name"), text("description").optional()];
+    keys.extend(layout.tables(&loop_keys(freedom)));
     keys.extend([
         Key::of_table("stroke", stroke(freedom)),
         Key::of_table("samples", samples(freedom, effort)).optional(),
-        match layout.has_sections() {
-            true => table("simulation", simulation).optional(),
-            false => table("simulation", simulation),
-        },
+        table("simulation", SIMULATION).optional(),
         table("sensors", SENSORS).optional(),
         table("experiment", EXPERIMENT).optional(),
         Key::of_table("tolerances", tolerances(layout)).optional(),
@@ -111,15 +93,10 @@ pub(super) fn effort_names(effort: Effort) -> [&'static str; 2] {
     }
 }
 
-const STEP: Key = quantity("step", &TIME, 1e-8, 0.01);
-
-const COUPLINGS: &[Key] = &[
-    // A body without a nut has none.
-    word("nut_coupling", &["shape-functions", "moving-node"]).optional(),
-    STEP,
+const SIMULATION: &[Key] = &[
+    word("method", &["fast", "exact"]).optional(),
+    quantity("step", &TIME, 1e-8, 0.01),
 ];
-
-const METHODS: &[Key] = &[word("method", &["fast", "exact"]).optional(), STEP];
 
 const KIND: &[Key] = &[text("kind")];
 

@@ -1,19 +1,15 @@
-//! Which table of a file holds the keys of which part.
-//!
-//! A file has a section for each part, which names the part's kind. Files of the first
-//! schema have none: their `kind` stands for the kinds of all parts, and the keys stand in
-//! tables of their own.
+//! The kinds of a file's parts, each named in a section of its own.
 
 use super::error::AxisFileError;
-use super::fields::Fields;
-use super::first_keys::{SHORT_KINDS, loop_keys};
+use super::fields::{Fields, SCHEMA};
+use super::loop_keys::loop_keys;
 use super::registry::Registry;
 use crate::actuator::Actuator;
 use crate::control::{Control, absent};
 use crate::friction::Friction;
 use crate::load::Load;
 use crate::mechanism::{Freedom, Mechanism};
-use crate::part::{Key, PartKind, count, named, text};
+use crate::part::{Key, PartKind, named, text};
 
 /// The four parts that every axis has once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,94 +20,26 @@ pub(super) enum Section {
     Friction,
 }
 
-/// Some keys of a part, or all, and the table that they stand in.
-type Place = (&'static str, Section, &'static [&'static str]);
+impl Section {
+    pub const ALL: [Self; 4] = [
+        Self::Mechanism,
+        Self::Actuator,
+        Self::Control,
+        Self::Friction,
+    ];
 
-/// All keys of a part.
-const ALL: &[&str] = &[];
+    /// The table of the part.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mechanism => "mechanism",
+            Self::Actuator => "actuator",
+            Self::Control => "control",
+            Self::Friction => "friction",
+        }
+    }
+}
 
-/// A file with a section for each part.
-const SECTIONS: &[Place] = &[
-    ("mechanism", Section::Mechanism, ALL),
-    ("actuator", Section::Actuator, ALL),
-    ("control", Section::Control, ALL),
-    ("friction", Section::Friction, ALL),
-];
-
-/// `kind = "ball-screw"`, or none, in the first schema.
-const BALL_SCREW: &[Place] = &[
-    (
-        "screw",
-        Section::Mechanism,
-        &[
-            "length",
-            "diameter",
-            "lead",
-            "elements",
-            "youngs_modulus",
-            "poisson_ratio",
-            "density",
-        ],
-    ),
-    (
-        "drive",
-        Section::Mechanism,
-        &[
-            "motor_inertia",
-            "torque_sensor_inertia",
-            "motor_coupling",
-            "screw_coupling",
-            "nut_stiffness",
-            "table_mass",
-            "stiffness_damping",
-            "bearing_stiffness",
-            "mounting",
-            "backlash",
-        ],
-    ),
-    ("friction", Section::Friction, ALL),
-    (
-        "motor",
-        Section::Actuator,
-        &[
-            "pole_pairs",
-            "torque_constant",
-            "resistance",
-            "inductance_d",
-            "inductance_q",
-        ],
-    ),
-    (
-        "inverter",
-        Section::Actuator,
-        &["dc_link", "dead_time_voltage"],
-    ),
-    (
-        "control",
-        Section::Actuator,
-        &[
-            "current_d_proportional",
-            "current_d_integral",
-            "current_q_proportional",
-            "current_q_integral",
-            "current_limit",
-            "command_delay",
-            "current_delay_periods",
-        ],
-    ),
-    ("control", Section::Control, ALL),
-];
-
-/// `kind = "rigid-mass"` in the first schema.
-const RIGID_MASS: &[Place] = &[
-    ("body", Section::Mechanism, ALL),
-    ("body", Section::Actuator, &["force_gain"]),
-    ("body", Section::Friction, ALL),
-    ("control", Section::Control, ALL),
-    ("control", Section::Actuator, &["command_limit"]),
-];
-
-/// The kinds of a file's parts, and where their keys stand.
+/// The kinds of a file's parts.
 pub(super) struct Layout {
     pub mechanism: &'static PartKind<dyn Mechanism>,
     pub actuator: &'static PartKind<dyn Actuator>,
@@ -119,96 +47,32 @@ pub(super) struct Layout {
     pub friction: &'static PartKind<Friction>,
     /// Of each `[[load]]`.
     pub loads: Vec<&'static PartKind<dyn Load>>,
-    /// Whether each part has a section.
-    sections: bool,
-    places: &'static [Place],
 }
 
 impl Layout {
-    /// A file with a section for each part.
-    pub fn sections(
-        mechanism: &'static PartKind<dyn Mechanism>,
-        actuator: &'static PartKind<dyn Actuator>,
-        control: &'static PartKind<dyn Control>,
-        friction: &'static PartKind<Friction>,
-    ) -> Self {
-        Self {
-            mechanism,
-            actuator,
-            control,
-            friction,
-            loads: Vec::new(),
-            sections: true,
-            places: SECTIONS,
-        }
-    }
-
-    /// A file of the first schema, by its kind; none if the registry lacks one of its parts.
-    pub fn short(
-        kind: &str,
-        registry: &Registry,
-        loads: Vec<&'static PartKind<dyn Load>>,
-    ) -> Option<Self> {
-        let (kinds, places) = match kind == SHORT_KINDS[1] {
-            true => (["rigid-mass", "force-gain", "p-p", "coulomb"], RIGID_MASS),
-            false => (
-                ["ball-screw", "pmsm-foc", "p-pi", "lugre-at-motor"],
-                BALL_SCREW,
-            ),
-        };
-        let [mechanism, actuator, control, friction] = kinds;
-        Some(Self {
-            mechanism: named(&registry.mechanisms, mechanism)?,
-            actuator: named(&registry.actuators, actuator)?,
-            control: named(&registry.controls, control)?,
-            friction: named(&registry.frictions, friction)?,
-            loads,
-            sections: false,
-            places,
-        })
-    }
-
-    /// Whether each part has a section, which names its kind.
-    pub fn has_sections(&self) -> bool {
-        self.sections
-    }
-
-    /// What a file has, by its sections or its kind.
+    /// What a file has, by its sections.
     pub fn of(root: &Fields<'_>, registry: &Registry) -> Result<Self, AxisFileError> {
-        let loads = root.unchecked("load", vec![kinds_key(&registry.loads)])?;
-        let loads = loads.iter().map(|load| kind_of(load, &registry.loads));
-        let loads: Vec<_> = loads.collect::<Result<_, _>>()?;
-        let has = |places: &[Place]| {
-            let mut own = places.iter().map(|(table, ..)| *table);
-            own.any(|table| table != "control" && table != "friction" && root.has(table))
-        };
-        // A file that has neither is asked for sections, which any axis can have.
-        let short = root.has("kind") || has(BALL_SCREW) || has(RIGID_MASS);
-        if !has(SECTIONS) && short {
-            let rigid = root.has("kind") && root.word("kind")? == SHORT_KINDS[1];
-            let found = Self::short(SHORT_KINDS[usize::from(rigid)], registry, loads);
-            return found.ok_or_else(|| {
-                let what = "has kinds that are not registered".to_owned();
-                root.refuse_table(what, "a file with a section for each part")
-            });
+        if root.has("schema") {
+            root.count("schema")?;
         }
         // A mistyped section is named before it is missed.
         root.check(&section_keys())?;
+        let loads = root.unchecked("load", vec![kinds_key(&registry.loads)])?;
+        let loads = loads.iter().map(|load| kind_of(load, &registry.loads));
         Ok(Self {
-            mechanism: kind_in(root, "mechanism", &registry.mechanisms)?,
-            actuator: kind_in(root, "actuator", &registry.actuators)?,
+            mechanism: kind_in(root, Section::Mechanism, &registry.mechanisms)?,
+            actuator: kind_in(root, Section::Actuator, &registry.actuators)?,
             control: match root.has("control") {
-                true => kind_in(root, "control", &registry.controls)?,
+                true => kind_in(root, Section::Control, &registry.controls)?,
                 false => &absent::KIND,
             },
-            friction: kind_in(root, "friction", &registry.frictions)?,
-            loads,
-            sections: true,
-            places: SECTIONS,
+            friction: kind_in(root, Section::Friction, &registry.frictions)?,
+            loads: loads.collect::<Result<_, _>>()?,
         })
     }
 
-    fn part_keys(&self, section: Section) -> &'static [Key] {
+    /// The keys of a part.
+    pub fn keys(&self, section: Section) -> &'static [Key] {
         match section {
             Section::Mechanism => self.mechanism.keys,
             Section::Actuator => self.actuator.keys,
@@ -217,49 +81,21 @@ impl Layout {
         }
     }
 
-    /// Keys of a part that stand in a table: its name, and the keys.
-    fn keys_of(&self, place: &Place) -> impl Iterator<Item = Key> {
-        let (_, section, names) = *place;
-        let wanted = move |key: &&Key| names.is_empty() || names.contains(&key.name);
-        self.part_keys(section).iter().filter(wanted).cloned()
-    }
-
-    /// The tables of the parts: name, and keys beside `own` ones of that table.
-    pub fn tables(&self, own: &[(&'static str, Vec<Key>)]) -> Vec<Key> {
-        let mut names: Vec<&'static str> = Vec::new();
-        for (table, ..) in self.places {
-            if !names.contains(table) {
-                names.push(table);
+    /// The sections, `[control]` with `own` keys besides.
+    pub fn tables(&self, own: &[Key]) -> impl Iterator<Item = Key> {
+        Section::ALL.into_iter().map(|section| {
+            let mut keys = vec![kind()];
+            if section == Section::Control {
+                keys.extend_from_slice(own);
             }
-        }
-        let table = |name: &'static str| {
-            let places = self.places.iter().filter(|(table, ..)| *table == name);
-            let parts = places.flat_map(|place| self.keys_of(place));
-            let own = own.iter().filter(|(table, _)| *table == name);
-            let own = own.flat_map(|(_, keys)| keys.iter().cloned());
-            let mut keys: Vec<Key> = own.chain(parts).collect();
-            if self.has_sections() {
-                keys.insert(0, kind());
+            keys.extend_from_slice(self.keys(section));
+            let table = Key::of_table(section.name(), keys);
+            // Without control a log is answered by a balance of torques.
+            match section {
+                Section::Control => table.optional(),
+                _ => table,
             }
-            // Without control a log is answered by a balance of torques; a table of the first
-            // schema may be left out with its keys.
-            let may_miss = match self.has_sections() {
-                true => name == "control",
-                false => keys.iter().all(Key::is_optional),
-            };
-            match may_miss {
-                true => Key::of_table(name, keys).optional(),
-                false => Key::of_table(name, keys),
-            }
-        };
-        names.into_iter().map(table).collect()
-    }
-
-    /// The tables and keys of one part.
-    pub fn places(&self, section: Section) -> Vec<(&'static str, Vec<Key>)> {
-        let own = self.places.iter().filter(|(_, of, _)| *of == section);
-        own.map(|place| (place.0, self.keys_of(place).collect()))
-            .collect()
+        })
     }
 }
 
@@ -278,16 +114,16 @@ pub const TABLES_WITHOUT_PARTS: &[&str] = &[
     "rating",
 ];
 
-/// What a file with a section for each part may have.
+/// The tables and keys of the file itself.
 fn section_keys() -> Vec<Key> {
-    let parts = SECTIONS.iter().map(|(table, ..)| *table);
+    let parts = Section::ALL.into_iter().map(Section::name);
     let lists = ["trajectory", "load", "effects"].map(|name| Key::of_tables(name, Vec::new()));
     let all = parts
         .chain(TABLES_WITHOUT_PARTS.iter().copied())
         .map(|name| Key::of_table(name, Vec::new()));
     all.chain(lists)
         .chain(["name", "description"].map(text))
-        .chain([count("schema", 1, 2)])
+        .chain([SCHEMA])
         .collect()
 }
 
@@ -296,18 +132,18 @@ fn kind() -> Key {
     text("kind")
 }
 
-/// The kind that the section `table` names.
-pub(super) fn kind_in<P: ?Sized>(
+/// The kind that a section names.
+fn kind_in<P: ?Sized>(
     root: &Fields<'_>,
-    table: &'static str,
+    section: Section,
     kinds: &[&'static PartKind<P>],
 ) -> Result<&'static PartKind<P>, AxisFileError> {
-    let section = root.peek(table, vec![kinds_key(kinds)])?;
-    let own = match table {
-        "control" => [Freedom::Linear, Freedom::Rotary].map(loop_keys).concat(),
+    let table = root.peek(section.name(), vec![kinds_key(kinds)])?;
+    let own = match section {
+        Section::Control => [Freedom::Linear, Freedom::Rotary].map(loop_keys).concat(),
         _ => Vec::new(),
     };
-    named_kind(&section, kinds, own)
+    named_kind(&table, kinds, own)
 }
 
 /// The kind that a table names.

@@ -92,7 +92,7 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
     };
     // What is not simulated needs no step.
     let simulation = match has_control || root.has("simulation") {
-        true => simulation(&root, &layout, mechanism.exact_step().is_some())?,
+        true => simulation(&root, mechanism.exact_step().is_some())?,
         false => Simulation {
             step: PERIOD,
             method: SolutionMethod::Fast,
@@ -102,11 +102,6 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
         check_step(&root.table("simulation")?, period, simulation.step)?;
     }
     let stroke = extras::stroke(&root.table("stroke")?, mechanism.reach(), freedom)?;
-    let limit = match has_control {
-        true => control_table.optional_number("following_error_limit")?,
-        false => None,
-    };
-    let following_error_limit = limit.unwrap_or_else(|| usual_limit(&layout, freedom, &control));
     let control_estimated =
         has_control && control_table.has("gains") && control_table.word("gains")? == "estimated";
     let pace = Pace {
@@ -134,7 +129,7 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
         control_estimated,
         friction,
         period,
-        following_error_limit,
+        following_error_limit: following_error_limit(&root, freedom)?,
         simulation,
         stroke,
     };
@@ -152,6 +147,18 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
     axis.rating = extras::rating(&root, &axis)?;
     extras::check_rating(&root, &axis)?;
     Ok(axis)
+}
+
+/// Tracking error at which a run is given up.
+fn following_error_limit(root: &Fields<'_>, freedom: Freedom) -> Result<f64, AxisFileError> {
+    let limit = match root.optional_table("control")? {
+        Some(control) => control.optional_number("following_error_limit")?,
+        None => None,
+    };
+    Ok(limit.unwrap_or(match freedom {
+        Freedom::Linear => FOLLOWING_ERROR_LIMIT,
+        Freedom::Rotary => FOLLOWING_ANGLE_LIMIT,
+    }))
 }
 
 /// A friction per m or per rad of the load is of a load that moves like that.
@@ -202,15 +209,6 @@ fn check_effort(
     Ok(())
 }
 
-/// Tracking error at which a run is given up where the file does not say.
-fn usual_limit(layout: &Layout, freedom: Freedom, control: &Part<dyn Control>) -> f64 {
-    match (layout.has_sections(), freedom) {
-        (_, Freedom::Rotary) => FOLLOWING_ANGLE_LIMIT,
-        (false, _) if control.starts_in_motion() => f64::INFINITY,
-        _ => FOLLOWING_ERROR_LIMIT,
-    }
-}
-
 /// Every gain ends in the actuator's command, per m or per rad as what it acts on moves.
 fn check_gains(
     table: &Fields<'_>,
@@ -245,7 +243,7 @@ fn check_gains(
     Ok(())
 }
 
-/// A part from the tables that its keys stand in.
+/// A part from its section; the control that is absent has none.
 fn part<P: ?Sized>(
     root: &Fields<'_>,
     layout: &Layout,
@@ -253,28 +251,11 @@ fn part<P: ?Sized>(
     kind: &'static PartKind<P>,
 ) -> Result<Part<P>, AxisFileError> {
     let mut values = Values::default();
-    let mut tables = Vec::new();
-    for (table, keys) in layout.places(section) {
-        // A table of optional keys may be left out with them.
-        let table = match keys.iter().all(|key| key.optional) {
-            true => root.optional_table(table)?,
-            false => Some(root.table(table)?),
-        };
-        if let Some(table) = table {
-            table.part(&keys, &mut values)?;
-            tables.push((table, keys));
-        }
+    let table = root.optional_table(section.name())?;
+    if let Some(table) = &table {
+        table.part(layout.keys(section), &mut values)?;
     }
-    Part::new(kind, values).map_err(|error| {
-        let holds = |(_, keys): &&(Fields<'_>, Vec<Key>)| {
-            keys.iter().any(|key| Some(key.name) == error.key)
-        };
-        let last = tables.iter().find(holds).or(tables.last());
-        match last {
-            Some((table, _)) => table.refuse_part(&error),
-            None => root.refuse_part(&error),
-        }
-    })
+    Part::new(kind, values).map_err(|error| table.as_ref().unwrap_or(root).refuse_part(&error))
 }
 
 /// A part in a table of its own, which names its kind.
@@ -412,17 +393,11 @@ fn implied_ranges(axis: &Axis) -> Option<SampleRanges> {
     })
 }
 
-fn simulation(
-    root: &Fields<'_>,
-    layout: &Layout,
-    has_exact: bool,
-) -> Result<Simulation, AxisFileError> {
+fn simulation(root: &Fields<'_>, has_exact: bool) -> Result<Simulation, AxisFileError> {
     let f = root.table("simulation")?;
-    let method = match layout.has_sections() {
-        true if !f.has("method") => SolutionMethod::Fast,
-        true if f.word("method")? == "exact" => SolutionMethod::Exact,
-        false if has_exact && f.word("nut_coupling")? == "moving-node" => SolutionMethod::Exact,
-        _ => SolutionMethod::Fast,
+    let method = match f.has("method") && f.word("method")? == "exact" {
+        true => SolutionMethod::Exact,
+        false => SolutionMethod::Fast,
     };
     let asked = f.number("step")?;
     let step = match (method, has_exact) {

@@ -102,8 +102,8 @@ impl Balance {
         let cutoffs: Vec<Cutoff> = cutoffs.collect::<Result<_, ReplayError>>()?;
         let cutoff = cutoffs.into_iter().reduce(Cutoff::lower);
         let cutoff = cutoff.unwrap_or(Cutoff(f64::INFINITY, CutoffReason::Sampling));
-        let one = |(motions, (log, period)): (Vec<Measured>, &(&Log, f64))| {
-            Self::prepared(log, *period, axis, channel, &motions, cutoff)
+        let one = |(motions, logged): (Vec<Measured>, &(&Log, f64))| {
+            Self::prepared(*logged, axis, channel, &motions, cutoff)
         };
         measured.into_iter().zip(logs).map(one).collect()
     }
@@ -117,9 +117,9 @@ impl Balance {
         Ok(all.remove(0))
     }
 
+    /// One log, with its sampling period (s).
     fn prepared(
-        log: &Log,
-        period: f64,
+        (log, period): (&Log, f64),
         axis: &Axis,
         channel: TorqueChannel,
         measured: &[Measured],
@@ -129,11 +129,11 @@ impl Balance {
         let motions = motions(axis, measured, period, motion_cutoff);
         let every = ((1.0 / (RATE * cutoff * period)).floor() as usize).max(1);
         let compared_period = every as f64 * period;
-        let told = DEVIATIONS * standing(axis, measured, motion_cutoff);
+        let seen = DEVIATIONS * speed_noise(axis, measured, motion_cutoff);
         let standstill = axis
             .balance
             .slowest
-            .map_or(told, |slowest| slowest.max(told));
+            .map_or(seen, |slowest| slowest.max(seen));
         let (mut moving, all) = moving(&motions.load, period, cutoff, every, standstill);
         let names = measured.iter().map(|m| m.name).chain([channel.name]);
         let holes = names.flat_map(|name| log.missing(name).iter().cloned());
@@ -345,7 +345,7 @@ fn inertia(axis: &Axis, whose: Whose) -> f64 {
 }
 
 /// Noise of the load's speed, RMS.
-fn standing(axis: &Axis, measured: &[Measured], cutoff: f64) -> f64 {
+fn speed_noise(axis: &Axis, measured: &[Measured], cutoff: f64) -> f64 {
     let one = &measured[0];
     match one.whose {
         Whose::Load => one.noise.speed(cutoff),

@@ -23,6 +23,9 @@ use crate::plant::{AdvanceError, Assembly, Plant, Running, Start};
 use crate::sensor::Sensing;
 use crate::work::{MOST_STEPS, check_period, cycles_of, substeps};
 
+/// Greatest internal step of a run that stands for a machine ([`ClosedLoop::exact`]), s.
+pub const MACHINE_STEP: f64 = 2e-5;
+
 /// The closed loop of an axis, prepared once for any number of runs.
 #[derive(Clone, Debug)]
 pub struct ClosedLoop {
@@ -259,6 +262,10 @@ impl ClosedLoop {
     }
 
     /// Sample, correct and control; what comes of it is `cycle`, whatever it was before.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "what a cycle reads and what it writes are borrowed apart, on the hot path"
+    )]
     fn decide(
         &self,
         state: &mut LoopState,
@@ -392,6 +399,7 @@ impl ClosedLoop {
 
     /// As [`ClosedLoop::run_sensed`], from the state that the axis was left in, and
     /// leaves it in the state at the motion's end.
+    #[expect(clippy::too_many_arguments, reason = "as `run_sensed`, with the state")]
     pub fn run_from(
         &self,
         state: &mut LoopState,

@@ -13,7 +13,7 @@
 
 use std::sync::Arc;
 
-use compensator::Passage;
+use compensator::SignalPath;
 use foc_pmsm::{Pi, PiParameters, PiState};
 
 use super::filter::Filter;
@@ -212,7 +212,7 @@ impl Control for Cascade {
             speed: self.speed[0],
             speed_integral: self.speed[1],
             from_motor: matches!(self.feedback, Feedback::Motor),
-            passage: self.passage(period),
+            signal_path: self.signal_path(period),
         })
     }
 
@@ -311,21 +311,21 @@ impl Cascade {
 
     /// What lies between a correction and the command. Rates and filters that the period
     /// does not go with are refused at the start.
-    fn passage(&self, period: f64) -> Passage {
+    fn signal_path(&self, period: f64) -> SignalPath {
         let speed_every = self.speed_every(period);
         let filters = self.filters(period * f64::from(speed_every));
         let [speed, low_pass, notch] = filters.unwrap_or_default();
         let law = |filter: Option<Filter>| filter.map(|filter| filter.law());
         let position_every = every("position_rate", self.position_rate, period).unwrap_or(1);
         let blend = self.blend(period * f64::from(position_every));
-        Passage {
+        SignalPath {
             position_every,
             speed_every,
             speed: law(speed),
             command: [law(low_pass), law(notch)],
             other_position: matches!(self.feedback, Feedback::Blend(_)),
             blend: law(blend.unwrap_or_default()),
-            ..Passage::default()
+            ..SignalPath::default()
         }
     }
 }

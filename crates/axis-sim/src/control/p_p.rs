@@ -8,7 +8,7 @@
 
 use std::sync::Arc;
 
-use compensator::{Cascade, Passage};
+use compensator::{Cascade, SignalPath};
 
 use super::output::Output;
 use super::{CascadeGains, Control, Controller, Demand, Situation};
@@ -56,9 +56,9 @@ impl Control for PP {
             speed: self.speed * travel,
             speed_integral: 0.0,
             from_motor: false,
-            passage: Passage {
+            signal_path: SignalPath {
                 speed_of_position: true,
-                ..Passage::default()
+                ..SignalPath::default()
             },
         })
     }

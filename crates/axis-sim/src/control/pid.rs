@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use compensator::{Cascade, Passage};
+use compensator::{Cascade, SignalPath};
 
 use super::filter::Filter;
 use super::output::Output;
@@ -69,9 +69,9 @@ impl Control for Pid {
             speed: travel * self.derivative,
             speed_integral: self.integral / position,
             from_motor: false,
-            passage: Passage {
+            signal_path: SignalPath {
                 speed: Some(lowpass.law()),
-                ..Passage::default()
+                ..SignalPath::default()
             },
         })
     }

@@ -1,43 +1,37 @@
 //! How effects fit an axis: its scales, and whether it has what they need.
 
 use super::effect::Effect;
-use super::parameter::{EffectNeed, PAPER_MOTION, Scales};
+use super::parameter::{EffectNeed, Scales};
 use crate::axis::Axis;
 use crate::freedom::Freedom;
 
-/// The paper's axis (data/axes/liu2025.toml), of which effects give typical sizes.
-const PAPER_LEVER: f64 = 0.010 / std::f64::consts::TAU;
-const PAPER_TORQUE: f64 = 1.641 * 15.0;
-const PAPER_STIFFNESS: f64 = 7.45e7;
-const PAPER_SPEED: f64 = 0.12;
-const PAPER_MASS: f64 = 515.0;
-const PAPER_INERTIA: f64 = 0.0096;
-
 impl Scales {
     /// Those of an axis. Where its file lists no trajectories, nothing says how fast it is meant
-    /// to be, and the paper's speed stands.
+    /// to be, and the reference machine's speed stands; so does its displacement for an axis
+    /// without a transmission.
     pub fn of(axis: &Axis) -> Self {
         let travel = axis.travel_per_radian();
         let torque = axis.torque_constant() * axis.actuator.limit();
         let force = torque / travel;
-        let stroke = axis.stroke.maximum - axis.stroke.minimum;
+        let (length, whole) = (
+            axis.stroke.maximum - axis.stroke.minimum,
+            Self::REFERENCE.stroke,
+        );
         let fastest = axis.trajectories.iter().map(|t| t.limits.velocity());
-        let fastest = fastest.reduce(f64::max).unwrap_or(PAPER_SPEED);
         let stiffness = axis.mechanism.stiffness();
-        let load = axis.mechanism.load_inertia();
-        let paper_force = PAPER_TORQUE / PAPER_LEVER;
+        let inertia = axis.mechanism.total_inertia();
         Self {
             freedom: axis.freedom(),
-            force: force / paper_force,
-            displacement: stiffness.map_or(1.0, |k| (force / k) / (paper_force / PAPER_STIFFNESS)),
-            speed: fastest / PAPER_SPEED,
-            inertia: load / PAPER_MASS,
-            motor_inertia: axis.mechanism.total_inertia() / PAPER_INERTIA,
-            motor_torque: torque / PAPER_TORQUE,
-            effort: axis.actuator.limit() / 15.0,
-            acceleration: (torque / axis.mechanism.total_inertia() * travel)
-                / (PAPER_TORQUE / PAPER_INERTIA * PAPER_LEVER),
-            motion: (stroke * PAPER_MOTION / 1.5).max(f64::MIN_POSITIVE),
+            force,
+            displacement: stiffness.map_or(Self::REFERENCE.displacement, |k| force / k),
+            speed: fastest.reduce(f64::max).unwrap_or(Self::REFERENCE.speed),
+            inertia: axis.mechanism.load_inertia(),
+            motor_inertia: inertia,
+            motor_torque: torque,
+            effort: axis.actuator.limit(),
+            acceleration: torque / inertia * travel,
+            motion: (length * Self::REFERENCE.motion / (whole[1] - whole[0]))
+                .max(f64::MIN_POSITIVE),
             stroke: [axis.stroke.minimum, axis.stroke.maximum],
             start: axis.stroke.start,
         }

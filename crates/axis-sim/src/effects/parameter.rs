@@ -12,10 +12,10 @@ pub struct EffectParameter {
     pub measure: Measure,
     /// What it is to the effect.
     pub nature: Nature,
-    /// Where the search starts for it on the paper's axis while the effect is small;
+    /// Where the search starts for it on [`Scales::REFERENCE`] while the effect is small;
     /// for a size, this is a typical one, whose null value is 0.
     pub typical: f64,
-    /// Least and greatest value on the paper's axis.
+    /// Least and greatest value there.
     pub bounds: [f64; 2],
 }
 
@@ -39,12 +39,12 @@ pub enum Nature {
     Place([f64; 2]),
     /// A width along the stroke; a test draws it between these shares of a motion.
     Width([f64; 2]),
-    /// A speed: where the search starts (on the paper's axis), and between which a test
+    /// A speed: where the search starts (on [`Scales::REFERENCE`]), and between which a test
     /// draws it, in logarithm.
     Speed([f64; 3], [f64; 2]),
     /// A time constant, s: where the search starts, and between which a test draws it.
     Time([f64; 2], [f64; 2]),
-    /// Any other number above zero: where the search starts (on the paper's axis), and
+    /// Any other number above zero: where the search starts (on [`Scales::REFERENCE`]), and
     /// between which a test draws it, in logarithm.
     Extent(&'static [f64], [f64; 2]),
     /// A natural frequency, Hz: where the search starts if each start takes a simulation, and
@@ -130,61 +130,89 @@ impl Measure {
     }
 }
 
-/// How large things are on an axis, beside the paper's.
+/// How large things are on an axis, which is what its effects are in proportion to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
     /// How the load moves.
     pub freedom: Freedom,
-    /// Greatest force of the actuator at the load.
+    /// Greatest force of the actuator at the load, N or N·m.
     pub(super) force: f64,
-    /// Way by which that force winds the transmission up.
+    /// Displacement by which that force winds the transmission up, m or rad.
     pub(super) displacement: f64,
-    /// Speed of its fastest trajectory.
+    /// Speed of its fastest trajectory, m/s or rad/s.
     pub(super) speed: f64,
-    /// Load inertia that the force moves as fast.
+    /// Inertia of the load, kg or kg·m².
     pub(super) inertia: f64,
-    /// Inertia of all that moves, at the motor.
+    /// Inertia of all that moves, at the motor, kg·m².
     pub(super) motor_inertia: f64,
-    /// Greatest torque of the motor.
+    /// Greatest torque of the motor, N·m.
     pub(super) motor_torque: f64,
-    /// Greatest command.
+    /// Greatest command of the actuator, in its unit.
     pub(super) effort: f64,
-    /// Acceleration that the force gives to all that moves.
+    /// Acceleration that the greatest torque gives to all that moves, m/s² or rad/s².
     pub(super) acceleration: f64,
-    /// Length of a motion on which effects are looked for.
+    /// Length of a motion on which effects are looked for, m or rad.
     pub motion: f64,
-    /// Least and greatest position.
+    /// Least and greatest position, m or rad.
     pub stroke: [f64; 2],
-    /// Where motions start.
+    /// Where motions start, m or rad.
     pub start: f64,
 }
 
-/// Length of the motions on which effects are looked for there, m.
-pub(super) const PAPER_MOTION: f64 = 0.2;
+/// Travel of the reference machine's table per radian of its screw, m/rad.
+const LEVER: f64 = 0.010 / std::f64::consts::TAU;
+/// Its greatest torque, N·m, at its greatest current, A.
+const TORQUE: f64 = 1.641 * CURRENT;
+const CURRENT: f64 = 15.0;
+/// Inertia of all that moves, at the motor, kg·m².
+const MOVED: f64 = 0.0096;
+/// Stiffness of its transmission, N/m.
+const STIFFNESS: f64 = 7.45e7;
 
 impl Scales {
-    /// By how much a measure is larger here than on the paper's axis.
+    /// The machine for which the registry states the numbers of effects: a table on a ball screw of
+    /// 10 mm lead, with the numbers of `data/axes/liu2025.toml`. On an axis each number is larger by
+    /// what the axis has more of its measure.
+    pub const REFERENCE: Self = Self {
+        freedom: Freedom::Linear,
+        force: TORQUE / LEVER,
+        displacement: TORQUE / LEVER / STIFFNESS,
+        speed: 0.12,
+        inertia: 515.0,
+        motor_inertia: MOVED,
+        motor_torque: TORQUE,
+        effort: CURRENT,
+        acceleration: TORQUE / MOVED * LEVER,
+        motion: 0.2,
+        stroke: [0.0, 1.5],
+        start: 0.6,
+    };
+
+    /// By how much a measure is larger here than on the reference machine.
     pub fn ratio(&self, measure: Measure) -> f64 {
+        let times = |of: fn(&Self) -> f64| of(self) / of(&Self::REFERENCE);
+        let (force, displacement) = (times(|s| s.force), times(|s| s.displacement));
+        let (speed, motion) = (times(|s| s.speed), times(|s| s.motion));
         let ratio = match measure {
-            Measure::Force => self.force,
-            Measure::Displacement => self.displacement,
-            Measure::Travel => self.motion / PAPER_MOTION,
-            Measure::Speed => self.speed,
-            Measure::Acceleration => self.acceleration,
-            Measure::Damping => self.force / self.speed,
-            Measure::Stiffness => self.force / self.displacement,
-            Measure::SpringRate => self.force / (self.motion / PAPER_MOTION),
-            Measure::Inertia => self.inertia,
-            Measure::MotorInertia => self.motor_inertia,
-            Measure::MotorTorque => self.motor_torque,
-            Measure::Current => self.effort,
+            Measure::Force => force,
+            Measure::Displacement => displacement,
+            Measure::Travel => motion,
+            Measure::Speed => speed,
+            Measure::Acceleration => times(|s| s.acceleration),
+            Measure::Damping => force / speed,
+            Measure::Stiffness => force / displacement,
+            Measure::SpringRate => force / motion,
+            Measure::Inertia => times(|s| s.inertia),
+            Measure::MotorInertia => times(|s| s.motor_inertia),
+            Measure::MotorTorque => times(|s| s.motor_torque),
+            Measure::Current => times(|s| s.effort),
             Measure::Ratio
             | Measure::MotorAngle
             | Measure::Voltage
             | Measure::Time
             | Measure::Other(_) => 1.0,
         };
-        // To the digit, or nothing of the paper's axis would be as it is said to be.
+        // To the digit, or the numbers of the registry would be those of no axis.
         let near = (ratio - 1.0).abs() < 0.01;
         if near || !(ratio.is_finite() && ratio > 0.0) {
             1.0
@@ -208,12 +236,14 @@ impl EffectParameter {
     /// Its typical value on an axis of those scales.
     pub fn typical(&self, on: &Scales) -> f64 {
         match self.nature {
-            Nature::Place(_) | Nature::Width(_) => self.typical / PAPER_MOTION * on.motion,
+            Nature::Place(_) | Nature::Width(_) => {
+                self.typical / Scales::REFERENCE.motion * on.motion
+            }
             _ => self.typical * on.ratio(self.measure),
         }
     }
 
-    /// Least and greatest value there: never less than on the paper's axis.
+    /// Least and greatest value there: a size never less than on the reference machine.
     pub fn bounds(&self, on: &Scales) -> [f64; 2] {
         let by = match self.nature {
             Nature::Place(_) => {
@@ -221,7 +251,7 @@ impl EffectParameter {
                 let beyond = 0.5 * (high - low);
                 return [low - beyond, high + beyond];
             }
-            Nature::Width(_) => on.motion / PAPER_MOTION,
+            Nature::Width(_) => on.motion / Scales::REFERENCE.motion,
             _ => on.ratio(self.measure),
         };
         match self.nature {

@@ -6,7 +6,7 @@
 //! cooling within a log. The first-order course is that of Simoni, Beschi, Legnani and
 //! Visioli, Robotica 37 (2019), doi:10.1017/S0263574717000509, with the way for the time.
 //!
-//! On the paper's axis D is some 20 m, three minutes at 0.1 m/s. A log of a few motions
+//! On `liu2025.toml` D is some 20 m, three minutes at 0.1 m/s. A log of a few motions
 //! shows no more than its slope F/D, hence one start for D.
 
 use super::{Effect, EffectChannel, EffectVariable, Measure, Nature, shape, size};

@@ -7,7 +7,7 @@ mod position_errors;
 pub use position_errors::PositionErrors;
 
 use compensator::{
-    Along, Cascade, CompensatorError, DriveModel, DriveSection, Kinematics, Passage,
+    Cascade, CompensatorError, DriveModel, DriveSection, Kinematics, SignalPath, StrokeSections,
 };
 use lugre::LugreError;
 use thiserror::Error;
@@ -137,7 +137,7 @@ impl Axis {
         let reach = self.mechanism.reach();
         let least = reach.map_or(self.stroke.minimum, |r| r.least.max(self.stroke.minimum));
         let most = reach.map_or(self.stroke.maximum, |r| r.most.min(self.stroke.maximum));
-        let along = Along::new([least, most], |x| {
+        let along = StrokeSections::new([least, most], |x| {
             let rotating = self.mechanism.rotating(x);
             let at_rest = TableState {
                 position: x,
@@ -161,11 +161,11 @@ impl Axis {
                 speed: 0.0,
                 speed_integral: 0.0,
                 from_motor: false,
-                passage: Passage::default(),
+                signal_path: SignalPath::default(),
             });
         // A load without a sensor is where the motor says that it is.
         let missing = matches!(self.sensors.load, LoadSensor::Missing);
-        cascade.passage.other_position |= cascade.from_motor && !missing;
+        cascade.signal_path.other_position |= cascade.from_motor && !missing;
         cascade.from_motor |= missing;
         let [amplitude, order, phase] = kinematics::harmonic(self, with_waves).unwrap_or_default();
         Ok(DriveModel {

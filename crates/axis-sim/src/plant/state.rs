@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use feed_dynamics::{NutErrors, TimeStepper};
+use feed_dynamics::{NutErrors, TableMotion, TimeStepper};
 
 use super::law::{Law, coulomb_bristle};
 use super::{AdvanceError, Running, Seen};
@@ -70,112 +70,201 @@ impl<S: TimeStepper> State<S> {
         steps: u32,
         actuator: &mut dyn Actuating,
     ) -> Result<(), AdvanceError> {
-        let assembly = &law.assembly;
-        let (friction, hooks) = (&assembly.friction, &assembly.hooks);
-        let h = stepper.step_length();
-        let has_loads = hooks.has_loads() || !assembly.loads.is_empty();
-        let rise = if self.loaded { 0.0 } else { STANDING_LOAD_RISE };
-        let mut errors = NutErrors::new(0.0, 0.0, assembly.backlash)?;
+        let mut errors = NutErrors::new(0.0, 0.0, law.assembly.backlash)?;
         for _ in 0..steps {
-            // The actuator, over the mean motor speed of the step.
-            let start = self.seen;
-            let mean_speed = start.motor_speed + 0.5 * h * self.motor_acceleration;
-            let own = actuator.torque(
-                &MotorMotion {
-                    angle: start.motor_angle,
-                    speed: mean_speed,
-                },
-                h,
-            );
-            let time = start.time + h;
-            let angle = start.motor_angle + h * mean_speed;
-            let torque = hooks.torque_at(angle, own);
-
-            // Mechanics; the friction follows the load's speed at the end of the step.
-            let mut at_drive = torque;
-            if hooks.has_offsets() {
-                let force = start.transmission_force + self.force_change;
-                let at = start.screw(time, angle, force);
-                let (there, reaction) = law.errors(&at, self.offset_origin)?;
-                errors = there;
-                at_drive += reaction;
-            }
-            let (z0, u0, w0) = (self.bristle, self.unit_bristle, law.by_lever(start.speed));
-            let (origin, travelled, memory) = (self.origin, self.travelled, &mut self.memory);
-            let outer_load = self.outer_load;
-            let loaded = (time / rise).min(1.0);
-            let (mut z1, mut u1, mut end_load) = (z0, u0, 0.0);
-            let contact = self.contact;
-            let mut next_contact = contact;
-            let report = stepper.step_through(&mut self.drive, at_drive, &errors, |table| {
-                let w1 = law.by_lever(table.speed);
-                let own = match (&friction.contact, contact) {
-                    (Some(law), Some(state)) => {
-                        let (state, own) = law.step(&state, [w0, w1], h);
-                        next_contact = Some(state);
-                        own
-                    }
-                    _ => {
-                        let (z, own) = friction.law.step_torque(z0, w0, w1, h);
-                        z1 = z;
-                        own
-                    }
-                };
-                let mut load = law.by_lever(own) + outer_load;
-                if has_loads {
-                    let mut bristle = 0.0;
-                    if law.moves_bristle {
-                        u1 = friction.unit.step(u0, w0, w1, h);
-                        bristle = friction.unit.torque(u1, w1);
-                    }
-                    let at = TableState {
-                        time,
-                        position: origin + table.displacement,
-                        speed: table.speed,
-                        bristle,
-                        loaded,
-                        transmitted: start.transmission_force,
-                        travelled,
-                    };
-                    load += hooks.loads_at(&at) + law.loads_at(&at);
-                    if !hooks.memories().is_empty() {
-                        let step = TableStep {
-                            length: h,
-                            travel: table.displacement - start.displacement,
-                            speed_before: start.speed,
-                            speed: table.speed,
-                        };
-                        load += hooks.memories().step(&step, memory);
-                    }
-                }
-                end_load = load;
-                load
-            });
-            if !report.load.converged {
-                return Err(AdvanceError::LoadNotFound {
-                    rounds: report.load.rounds,
-                    residual: report.load.residual,
-                });
-            }
-            self.bristle = z1;
-            self.contact = next_contact;
-            self.unit_bristle = u1;
-            let origins = [self.origin, self.motor_origin];
-            self.seen = Seen::of(
-                &stepper.observe(&self.drive),
-                origins,
-                time,
-                torque,
-                end_load,
-            );
-            self.motor_acceleration = (self.seen.motor_speed - start.motor_speed) / h;
-            if has_loads {
-                self.memory.accept();
-                self.travelled += (self.seen.displacement - start.displacement).abs();
-            }
-            self.force_change = self.seen.transmission_force - start.transmission_force;
+            let drive = self.drive_torque(law, stepper.step_length(), actuator, &mut errors)?;
+            self.step(law, stepper, &drive, &errors)?;
         }
         Ok(())
+    }
+
+    /// What the actuator gives over a step of `h` seconds, at the mean motor speed of the step, and the
+    /// transmission's kinematic errors (`errors`) at its end.
+    #[inline]
+    fn drive_torque(
+        &self,
+        law: &Law<S>,
+        h: f64,
+        actuator: &mut dyn Actuating,
+        errors: &mut NutErrors,
+    ) -> Result<DriveTorque, AdvanceError> {
+        let (start, hooks) = (&self.seen, &law.assembly.hooks);
+        let mean_speed = start.motor_speed + 0.5 * h * self.motor_acceleration;
+        let own = actuator.torque(
+            &MotorMotion {
+                angle: start.motor_angle,
+                speed: mean_speed,
+            },
+            h,
+        );
+        let angle = start.motor_angle + h * mean_speed;
+        let motor = hooks.torque_at(angle, own);
+        let mut at_drive = motor;
+        if hooks.has_offsets() {
+            let force = start.transmission_force + self.force_change;
+            let at = start.screw(start.time + h, angle, force);
+            let (there, reaction) = law.errors(&at, self.offset_origin)?;
+            *errors = there;
+            at_drive += reaction;
+        }
+        Ok(DriveTorque { motor, at_drive })
+    }
+
+    /// One step of the mechanics; the friction follows the load's speed at the end of the step.
+    #[inline]
+    fn step(
+        &mut self,
+        law: &Law<S>,
+        stepper: &S,
+        torque: &DriveTorque,
+        errors: &NutErrors,
+    ) -> Result<(), AdvanceError> {
+        let (start, h) = (self.seen, stepper.step_length());
+        let time = start.time + h;
+        let rise = if self.loaded { 0.0 } else { STANDING_LOAD_RISE };
+        let hooks = &law.assembly.hooks;
+        let load_of = LoadAtEnd {
+            law,
+            h,
+            start,
+            start_speed: law.by_lever(start.speed),
+            contact: self.contact,
+            bristle: self.bristle,
+            unit_bristle: self.unit_bristle,
+            origin: self.origin,
+            travelled: self.travelled,
+            outer: self.outer_load,
+            loaded: (time / rise).min(1.0),
+            has_loads: hooks.has_loads() || !law.assembly.loads.is_empty(),
+        };
+        let memory = &mut self.memory;
+        let mut end = load_of.untried();
+        let report = stepper.step_through(&mut self.drive, torque.at_drive, errors, |table| {
+            end = load_of.tried(&table, memory);
+            end.force
+        });
+        if !report.load.converged {
+            return Err(AdvanceError::LoadNotFound {
+                rounds: report.load.rounds,
+                residual: report.load.residual,
+            });
+        }
+        self.bristle = end.bristle;
+        self.contact = end.contact;
+        self.unit_bristle = end.unit_bristle;
+        self.seen = Seen::of(
+            &stepper.observe(&self.drive),
+            [self.origin, self.motor_origin],
+            time,
+            torque.motor,
+            end.force,
+        );
+        self.motor_acceleration = (self.seen.motor_speed - start.motor_speed) / h;
+        if load_of.has_loads {
+            self.memory.accept();
+            self.travelled += (self.seen.displacement - start.displacement).abs();
+        }
+        self.force_change = self.seen.transmission_force - start.transmission_force;
+        Ok(())
+    }
+}
+
+/// Torque of the motor, and with it what the transmission's errors add at the drive, N·m or N.
+struct DriveTorque {
+    motor: f64,
+    at_drive: f64,
+}
+
+/// The force on the load at the end of a step, as a function of the motion there.
+struct LoadAtEnd<'a, S> {
+    law: &'a Law<S>,
+    /// Length of the step, s.
+    h: f64,
+    start: Seen,
+    /// Speed at the start, in the friction's coordinate; so are the bristles there.
+    start_speed: f64,
+    contact: Option<ContactState>,
+    bristle: f64,
+    unit_bristle: f64,
+    origin: f64,
+    travelled: f64,
+    outer: f64,
+    /// Share of the constant loads that acts.
+    loaded: f64,
+    has_loads: bool,
+}
+
+/// That force at one motion of the load, and what friction remembers if the step ends so.
+struct TriedLoad {
+    force: f64,
+    bristle: f64,
+    unit_bristle: f64,
+    contact: Option<ContactState>,
+}
+
+impl<S: TimeStepper> LoadAtEnd<'_, S> {
+    /// What friction remembers at the start.
+    fn untried(&self) -> TriedLoad {
+        TriedLoad {
+            force: 0.0,
+            bristle: self.bristle,
+            unit_bristle: self.unit_bristle,
+            contact: self.contact,
+        }
+    }
+
+    #[inline]
+    fn tried(&self, table: &TableMotion, memory: &mut Memory) -> TriedLoad {
+        let (law, h) = (self.law, self.h);
+        let (friction, hooks) = (&law.assembly.friction, &law.assembly.hooks);
+        let speeds = [self.start_speed, law.by_lever(table.speed)];
+        let mut end = self.untried();
+        let own = match (&friction.contact, self.contact) {
+            (Some(law), Some(state)) => {
+                let (state, own) = law.step(&state, speeds, h);
+                end.contact = Some(state);
+                own
+            }
+            _ => {
+                let (z, own) = friction
+                    .law
+                    .step_torque(self.bristle, speeds[0], speeds[1], h);
+                end.bristle = z;
+                own
+            }
+        };
+        end.force = law.by_lever(own) + self.outer;
+        if !self.has_loads {
+            return end;
+        }
+        let mut bristle = 0.0;
+        if law.moves_bristle {
+            end.unit_bristle = friction
+                .unit
+                .step(self.unit_bristle, speeds[0], speeds[1], h);
+            bristle = friction.unit.torque(end.unit_bristle, speeds[1]);
+        }
+        let start = &self.start;
+        let at = TableState {
+            time: start.time + h,
+            position: self.origin + table.displacement,
+            speed: table.speed,
+            bristle,
+            loaded: self.loaded,
+            transmitted: start.transmission_force,
+            travelled: self.travelled,
+        };
+        end.force += hooks.loads_at(&at) + law.loads_at(&at);
+        if !hooks.memories().is_empty() {
+            let step = TableStep {
+                length: h,
+                travel: table.displacement - start.displacement,
+                speed_before: start.speed,
+                speed: table.speed,
+            };
+            end.force += hooks.memories().step(&step, memory);
+        }
+        end
     }
 }
 

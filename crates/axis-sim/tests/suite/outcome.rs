@@ -156,8 +156,8 @@ fn an_unstable_loop_hunts_within_its_limits() {
 fn the_following_error_limit_is_the_axis_files() {
     let content = crate::text(PRINTED);
     let limited = content.replacen(
-        "current_limit_a = 15 ",
-        "following_error_limit_um = 50\ncurrent_limit_a = 15 ",
+        "velocity_feedforward = 1.0 ",
+        "following_error_limit_um = 50\nvelocity_feedforward = 1.0 ",
         1,
     );
     // The reference lags by 54 µm at most; a limit of 50 µm stops it.

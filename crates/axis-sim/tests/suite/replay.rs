@@ -24,7 +24,7 @@ fn moving() -> Log {
 fn a_rigid_mass_has_its_own_following_error_limit() {
     let replay = Replay::new(&moving(), 1e-3).unwrap();
     let with = |limit: &str| {
-        let content = text(RIGID).replace("[stroke]", &format!("{limit}\n[stroke]"));
+        let content = text(RIGID).replace("following_error_limit_m = 10 ", limit);
         replay.run(&Axis::parse("emps.toml", &content).unwrap(), &[], None)
     };
     // A P–P loop lags by about v / K_p = 0.62 mm.

@@ -85,7 +85,7 @@ impl Part {
         Ok(modes)
     }
 
-    /// Says so where no convergence below `limit` comes of rounding as large as that.
+    /// The error that names rounding as the cause, if `limit` is below what rounding leaves.
     fn explained(&self, error: BeamError, limit: f64) -> BeamError {
         let rounding = self.rigid.rounding * self.scale;
         if error == BeamError::NotConverged && limit < HIDDEN * rounding {

@@ -152,10 +152,7 @@ impl Engine {
             matrix,
             ..
         } = self;
-        match &layout.free {
-            None => gram.write_lower(layout, factor, diagonal, matrix),
-            Some(free) => gram.write_lower_of(free, layout, factor, diagonal, matrix),
-        }
+        gram.write_lower(layout, factor, diagonal, matrix);
     }
 
     /// Euclidean norm of `factor Jᵀr + α w` over the parameters that are trained.

@@ -3,7 +3,7 @@
 use std::vec::Vec;
 
 use super::coordinates::GAP;
-use super::information::{gained, inverse};
+use super::information::{information_from, inverse};
 use super::known::{ALL, Column, Information, Known};
 use super::parameter::{COUNT, Theta};
 use super::record::Record;
@@ -89,7 +89,8 @@ impl Known<'_> {
             weights = residuals.weights(free.len(), settled == 0);
         }
         let weights = residuals.weights(free.len(), false);
-        let (information, variances, gap) = gained(self, record, &at, &residuals, &weights, &free);
+        let (information, variances, gap) =
+            information_from(self, record, &at, (&residuals, &weights), &free);
         Fit {
             estimate: std::array::from_fn(|i| at[i]),
             information,

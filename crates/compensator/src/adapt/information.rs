@@ -1,4 +1,4 @@
-//! What a fit has taught: information about the parameters, and their variances.
+//! What a fit says of the parameters: the inverse of their covariance (information), and their variances.
 
 use std::vec::Vec;
 
@@ -8,17 +8,16 @@ use super::parameter::{COUNT, Theta};
 use super::record::Record;
 use super::residual::{Residuals, Weights};
 
-/// No move tells a parameter to better than this: a model is none of the axis to more.
+/// Least standard error of a parameter after a move, as a share: no model fits an axis more closely.
 const MODEL: f64 = 5e-4;
 
-/// Information about the parameters, the prior left out; their variances, the prior
-/// included; the transmission's free travel and its standard error, rad.
-pub(super) fn gained(
+/// Information about the parameters without the prior; their variances with it; the
+/// transmission's free travel and its standard error, rad.
+pub(super) fn information_from(
     known: &Known<'_>,
     record: &Record,
     at: &Column,
-    residuals: &Residuals,
-    weights: &Weights,
+    (residuals, weights): (&Residuals, &Weights),
     free: &[usize],
 ) -> (Information, Theta, Option<[f64; 2]>) {
     // What the record says of the parameters once the nuisances are integrated out.

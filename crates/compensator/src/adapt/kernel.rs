@@ -2,7 +2,7 @@
 
 use std::vec::Vec;
 
-use libm::exp;
+use crate::gaussian::{bell, weighed_about};
 
 /// Weights of a Gaussian and of its differences.
 #[derive(Clone, Debug)]
@@ -17,19 +17,16 @@ impl Kernel {
         // The differences below need one sample more on either side.
         let reach = (4.0 * sigma).ceil() as usize;
         let half = reach + 1;
-        let bell = |i: isize| {
-            let m = i as f64 / sigma.max(1e-9);
-            match i.unsigned_abs() > reach {
-                true => 0.0,
-                false => exp(-0.5 * m * m),
-            }
+        let height = |i: isize| match i.unsigned_abs() > reach {
+            true => 0.0,
+            false => bell(i as f64 / sigma.max(1e-9)),
         };
         let span = -(half as isize)..=half as isize;
-        let sum: f64 = span.clone().map(bell).sum();
+        let sum: f64 = span.clone().map(height).sum();
         let of = |f: &dyn Fn(isize) -> f64| span.clone().map(|i| f(i) / sum).collect();
-        let value = of(&bell);
-        let rate = of(&|i| (bell(i - 1) - bell(i + 1)) / (2.0 * period));
-        let second = of(&|i| (bell(i - 1) - 2.0 * bell(i) + bell(i + 1)) / (period * period));
+        let value = of(&height);
+        let rate = of(&|i| (height(i - 1) - height(i + 1)) / (2.0 * period));
+        let second = of(&|i| (height(i - 1) - 2.0 * height(i) + height(i + 1)) / (period * period));
         Self {
             half,
             weights: [value, rate, second],
@@ -63,7 +60,7 @@ impl Kernel {
         let window = &padded[at..at + 2 * self.half + 1];
         // About the middle, so that the rates lose no digits to a standing value.
         let middle = window[self.half];
-        let sum = dot(&self.weights[which], window, middle);
+        let sum = weighed_about(middle, &self.weights[which], window);
         if which == 0 { middle + sum } else { sum }
     }
 }
@@ -71,18 +68,4 @@ impl Kernel {
 /// Mean of values.
 pub(super) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
-}
-
-/// Σ wᵢ (xᵢ − middle), in partial sums for the compiler.
-fn dot(weights: &[f64], window: &[f64], middle: f64) -> f64 {
-    let mut sums = [0.0; 8];
-    let (w, x) = (weights.chunks_exact(8), window.chunks_exact(8));
-    let rest = w.remainder().iter().zip(x.remainder());
-    let tail: f64 = rest.map(|(w, x)| w * (x - middle)).sum();
-    for (w, x) in w.zip(x) {
-        for i in 0..8 {
-            sums[i] += w[i] * (x[i] - middle);
-        }
-    }
-    sums.iter().sum::<f64>() + tail
 }

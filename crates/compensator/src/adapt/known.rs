@@ -26,7 +26,7 @@ pub(super) struct Known<'a> {
     /// Estimate that `information` is about.
     pub estimate: Theta,
     pub information: Information,
-    /// Half the free travel that earlier moves told, and its variance; rad at the motor.
+    /// Half the free travel as estimated from earlier moves, and its variance; rad at the motor.
     pub gap: [f64; 2],
 }
 

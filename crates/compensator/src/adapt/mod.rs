@@ -47,7 +47,7 @@ pub use parameter::{AdaptParameter, AdaptPrior, PriorSpread};
 use parameter::{COUNT, Theta};
 use record::Record;
 pub use report::{Estimated, Learned};
-pub use unexplained::Rest;
+pub use unexplained::UnexplainedTorque;
 
 /// A torque balance of which more than this share is left is of another machine.
 const MOST_LEFT: f64 = 0.3;
@@ -74,12 +74,12 @@ struct State {
     estimate: Theta,
     information: Information,
     variances: Theta,
-    /// Half the free travel and its variance, rad at the motor; infinite if no move told.
+    /// Half the free travel and its variance, rad at the motor; infinite before any estimate.
     gap: [f64; 2],
 }
 
 impl Adaptation {
-    /// Of a model of which `prior` tells how far it may be off.
+    /// Of a model that may be off by what `prior` says.
     ///
     /// # Errors
     /// [`AdaptError::Setting`] for a model that no plan can be made from, a prior out of

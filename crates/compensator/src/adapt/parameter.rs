@@ -107,11 +107,11 @@ impl Default for AdaptPrior {
     /// Settings of friction and compliance known to 20 %, inertia and break-away ratio to
     /// 10 %, viscosity to a half and within a factor of 100. A constant load of 1 % of the Coulomb
     /// level: in moves of one direction it looks
-    /// like friction, which is the likelier of the two; a reversal tells them apart.
+    /// like friction, which is likelier; a reversal separates the two.
     fn default() -> Self {
         let spread = |parameter| {
             let (deviation, bound) = match parameter {
-                // Every move of some speed tells it, and files have it far too small.
+                // Any move of some speed shows it, and axis files state it far too small.
                 AdaptParameter::Viscosity => (0.5, 100.0),
                 AdaptParameter::LoadInertia => (0.1, 3.0),
                 AdaptParameter::BreakAway => (0.1, 2.0),

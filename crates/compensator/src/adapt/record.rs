@@ -99,8 +99,8 @@ impl Record {
             let next = limited.partition_point(|&at| at + edge < k);
             limited.get(next).is_some_and(|&at| at <= k + edge)
         };
-        // What is before a log can be told of one at rest only, and only where friction
-        // breaks away too early is that worth its noise.
+        // Before its first sample a log can be continued only if it begins at standstill; that adds
+        // noise, and is done only if friction breaks away within the first samples.
         let way = log[2 * edge].reference.position - log[0].reference.position;
         let early = way.abs() > model.friction.bristle_limit() * model.lever;
         let from = if rest.is_some() && early { 0 } else { edge };
@@ -147,7 +147,7 @@ fn standing(model: &DriveModel, log: &[Sample]) -> usize {
     log.iter().take_while(|s| hardly(s)).count().max(1)
 }
 
-/// Whether the axis rests over the first samples, as told and as measured.
+/// Whether the axis stands still over the first samples, by reference and by measurement.
 fn rests(log: &[Sample], samples: usize) -> bool {
     let (first, then) = (&log[0], &log[samples.min(log.len() - 1)]);
     let fastest = |f: &dyn Fn(&Sample) -> f64| {

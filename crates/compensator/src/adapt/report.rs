@@ -1,4 +1,4 @@
-//! What is told of an adaptation.
+//! What an adaptation reports: each parameter with its standard error.
 
 use std::vec::Vec;
 

@@ -17,8 +17,8 @@ const SMOOTHING: f64 = 2.5e-3;
 
 /// The torque that a log needed besides the model's.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rest {
-    /// At instants [`Rest::spacing`] apart.
+pub struct UnexplainedTorque {
+    /// At instants [`UnexplainedTorque::spacing`] apart.
     pub instants: Vec<Unexplained>,
     /// Time between them, s.
     pub spacing: f64,
@@ -31,7 +31,7 @@ impl Adaptation {
     ///
     /// # Errors
     /// As [`Adaptation::learn`], where the log is too short or not usable.
-    pub fn unexplained(&self, log: &[Sample]) -> Result<Rest, AdaptError> {
+    pub fn unexplained(&self, log: &[Sample]) -> Result<UnexplainedTorque, AdaptError> {
         self.unexplained_of(log, &[])
     }
 
@@ -44,12 +44,16 @@ impl Adaptation {
         &self,
         log: &[Sample],
         residual: &mut impl Residual,
-    ) -> Result<Rest, AdaptError> {
+    ) -> Result<UnexplainedTorque, AdaptError> {
         let besides = self.besides(log, residual)?;
         self.unexplained_of(log, &besides)
     }
 
-    fn unexplained_of(&self, log: &[Sample], besides: &[[f64; 2]]) -> Result<Rest, AdaptError> {
+    fn unexplained_of(
+        &self,
+        log: &[Sample],
+        besides: &[[f64; 2]],
+    ) -> Result<UnexplainedTorque, AdaptError> {
         let assumed = self.now();
         let record = Record::new(&assumed, log, SMOOTHING, besides)?;
         let residuals = Residuals::at(&assumed, &record, &Column::zeros(), &[]);
@@ -68,7 +72,7 @@ impl Adaptation {
         let instants: Vec<Unexplained> = instants.collect();
         let cycles = record.points.windows(2).map(|w| w[1].sample - w[0].sample);
         let spacing = cycles.min().unwrap_or(1) as f64 * record.period;
-        Ok(Rest {
+        Ok(UnexplainedTorque {
             instants,
             spacing,
             smoothing: SMOOTHING.max(record.period),

@@ -25,7 +25,7 @@ pub use pulse::{ReversalPulse, ReversalStart};
 
 use crate::CompensatorError;
 use crate::error::{require, within};
-use crate::model::{Along, DriveModel, DriveSection, SECTIONS};
+use crate::model::{DriveModel, DriveSection, SECTIONS, StrokeSections};
 
 /// Numbers that an ordinary drive takes. SI units; torques and inertias at the motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +53,7 @@ pub struct DriveTerms<T = f64> {
     /// Torque of the axis' own loads at mid-stroke, N·m.
     pub standing: T,
     /// What depends on the position.
-    pub along: Along<T>,
+    pub along: StrokeSections<T>,
     /// Greatest command, in its unit.
     pub effort_limit: T,
     /// Control period, s.

@@ -1,4 +1,4 @@
-//! The triangle R of [Φ y] = Q R, and what it tells.
+//! The triangle R of [Φ y] = Q R: solutions, residuals and ranks of least squares from it.
 
 use std::vec::Vec;
 

@@ -4,6 +4,8 @@ use alloc::vec::Vec;
 
 use axis_scalar::Scalar;
 
+use crate::gaussian::bell;
+
 /// A Gaussian of a deviation in samples, cut off at four of them. Beyond the record's ends
 /// its first and last values go on.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,11 +23,11 @@ impl Gauss {
         } else {
             0
         };
-        let bell = |m: usize| match m {
+        let height = |m: usize| match m {
             0 => 1.0,
-            _ => Scalar::exp(-0.5 * (m as f64 / sigma) * (m as f64 / sigma)),
+            _ => bell(m as f64 / sigma),
         };
-        let mut weights: Vec<f64> = (0..=half).map(bell).collect();
+        let mut weights: Vec<f64> = (0..=half).map(height).collect();
         let sum = 2.0 * weights.iter().sum::<f64>() - 1.0;
         weights.iter_mut().for_each(|w| *w /= sum);
         Self { weights }

@@ -101,14 +101,14 @@ pub struct LearnedMove {
 
 /// Median of the magnitude of a normal variable of deviation 1.
 const NORMAL_MEDIAN: f64 = 0.6745;
-/// How much wider the second Gaussian is of which the noise is told.
+/// Width of the second Gaussian, in widths of the first: the noise is estimated from their difference.
 const WIDER: f64 = 3.0;
 /// What G − G·H has of the deviation that G has of white noise, H of three times G's width:
 /// √(1 − 2√2/√(1 + 1 + 9) + √2/√(2 + 18)), from ∫ of products of Gaussians.
 const FAST: f64 = 0.6808;
-/// How long a while is, in deviations of the Gaussian.
+/// Length of the window in which a move is judged, in deviations of the Gaussian.
 const WHILE: f64 = 5.0;
-/// Times the noise that it may reach itself in the worst while of a move.
+/// Multiple of the noise that noise itself reaches in the worst window of a move.
 const STANDS_OUT: f64 = 2.0;
 
 impl LearnedMove {

@@ -5,7 +5,7 @@ use lugre::Exponential;
 
 use crate::model::{Drive, DriveModel, MOST_DELAY};
 
-/// The command of a cycle and what comes of it.
+/// The command of a cycle, and the torque and currents that follow.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Commanded<T> {
     /// In the actuator's unit.
@@ -60,7 +60,7 @@ impl<T: Exponential> Inverse<T> {
         self.kept
     }
 
-    /// At rest with a torque (N·m) that it has held for ever.
+    /// Steady with a constant torque (N·m).
     pub fn settle(&mut self, torque: T) {
         self.torque = torque;
         if let Drive::FieldOriented { motor, gear, .. } = &self.drive {

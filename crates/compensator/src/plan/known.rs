@@ -2,7 +2,7 @@
 
 use lugre::Exponential;
 
-use super::{Homed, PlanSettings, Planned, Planner, Standstill, Target};
+use super::{HomedAt, PlanSettings, Planned, Planner, Standstill, Target};
 use crate::model::DriveModel;
 use crate::{Compensator, CompensatorError, Correction, Residual, ResidualModel, Sample};
 
@@ -13,7 +13,7 @@ pub struct Plan<F, T = f64, R = ResidualModel<T>> {
     /// Target of a cycle, counted from the start of the motion; beyond its end, rest.
     targets: F,
     own: T,
-    homed: Option<Homed<T>>,
+    homed: Option<HomedAt<T>>,
     held: Option<T>,
     cycle: usize,
     planned: Planned<T>,
@@ -68,7 +68,7 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>, R: Residual<T>> Plan<F, T, R>
     /// Says where the drive's position loop, closed at the motor, was homed, where that was
     /// before an earlier motion.
     #[must_use]
-    pub fn homed(mut self, homed: Homed<T>) -> Self {
+    pub fn homed(mut self, homed: HomedAt<T>) -> Self {
         self.homed = Some(homed);
         self
     }

@@ -32,7 +32,7 @@ mod target;
 use lugre::{Exponential, LuGre};
 
 pub use known::Plan;
-pub use target::{Homed, PlanSettings, Planned, Standstill, Target};
+pub use target::{HomedAt, PlanSettings, Planned, Standstill, Target};
 
 use crate::error::{require, within};
 use crate::model::{DriveModel, MOST_DELAY};

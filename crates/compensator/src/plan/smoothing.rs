@@ -2,11 +2,11 @@
 
 use axis_scalar::Scalar;
 
+use crate::gaussian::{bell, weighed_about};
+
 /// Most control periods from the middle to either end.
 pub(super) const MOST_HALF: usize = 192;
 const WINDOW: usize = 2 * MOST_HALF + 1;
-/// Partial sums, so that the compiler can use vectors.
-const LANES: usize = 8;
 
 /// Weights of a window, and the window.
 #[derive(Clone, Debug)]
@@ -24,23 +24,20 @@ impl<T: Scalar> Smoothing<T> {
     /// Deviation `sigma` in periods of `period` seconds, `half` periods to either side.
     pub fn new(sigma: T, half: usize, period: T) -> Self {
         let half = half.clamp(1, MOST_HALF);
-        let mut bell = [T::ZERO; WINDOW + 2];
+        let mut heights = [T::ZERO; WINDOW + 2];
         // One sample less than the window on either side: the rates are differences.
-        for (i, at) in bell.iter_mut().enumerate().take(2 * half + 1).skip(1) {
-            let m = T::of(i as f64 - half as f64 - 1.0) / sigma.max(T::MIN_POSITIVE);
+        for (i, at) in heights.iter_mut().enumerate().take(2 * half + 1).skip(2) {
             *at = if i == half + 1 {
                 T::ONE
             } else {
-                (-T::HALF * m * m).exp()
+                bell(T::of(i as f64 - half as f64 - 1.0) / sigma.max(T::MIN_POSITIVE))
             };
         }
-        bell[1] = T::ZERO;
-        bell[2 * half + 1] = T::ZERO;
-        let sum: T = bell.iter().copied().sum();
+        let sum: T = heights.iter().copied().sum();
         let mut weights = [[T::ZERO; WINDOW]; 3];
         for i in 0..=2 * half {
-            // bell[i + 1] is the weight of sample i.
-            let [before, at, after] = [bell[i], bell[i + 1], bell[i + 2]].map(|b| b / sum);
+            // heights[i + 1] is that of sample i.
+            let [before, at, after] = [heights[i], heights[i + 1], heights[i + 2]].map(|h| h / sum);
             weights[0][i] = at;
             weights[1][i] = (before - after) / (T::TWO * period);
             weights[2][i] = (before - T::TWO * at + after) / (period * period);
@@ -74,23 +71,9 @@ impl<T: Scalar> Smoothing<T> {
         // About the middle, so that the rates lose no digits to a standing value.
         let middle = window[self.half];
         let [value, rate, second] =
-            [0, 1, 2].map(|i| dot(&self.weights[i][..length], window, middle));
+            [0, 1, 2].map(|i| weighed_about(middle, &self.weights[i][..length], window));
         [middle + value, rate, second]
     }
-}
-
-/// Σ wᵢ (xᵢ − middle).
-fn dot<T: Scalar>(weights: &[T], window: &[T], middle: T) -> T {
-    let mut sums = [T::ZERO; LANES];
-    let (w, x) = (weights.chunks_exact(LANES), window.chunks_exact(LANES));
-    let rest = w.remainder().iter().zip(x.remainder());
-    let tail: T = rest.map(|(w, x)| *w * (*x - middle)).sum();
-    for (w, x) in w.zip(x) {
-        for ((sum, w), x) in sums.iter_mut().zip(w).zip(x) {
-            *sum += *w * (*x - middle);
-        }
-    }
-    sums.into_iter().sum::<T>() + tail
 }
 
 #[cfg(test)]

@@ -49,7 +49,7 @@ impl<T: Exponential> Target<T> {
 /// Where and under what a position loop that is closed at the motor was homed: there the
 /// position that it shows is the load's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Homed<T = f64> {
+pub struct HomedAt<T = f64> {
     /// Position of the load, m or rad.
     pub position: T,
     /// Command that the drive held it with, in the actuator's unit.
@@ -61,7 +61,7 @@ pub struct Homed<T = f64> {
 pub struct Standstill<T = f64> {
     /// Command that the drive holds the axis with, in the actuator's unit: what it has
     /// commanded last, or the mean over a standstill where that is noisy. With the load
-    /// known it tells how the friction's bristles were left.
+    /// known, the bristles' force follows from it.
     pub effort: T,
     /// Part of it that is a compensator's own; the drive's integrator holds the rest.
     pub own: T,
@@ -69,10 +69,10 @@ pub struct Standstill<T = f64> {
     pub motor_angle: T,
     /// Where a position loop that is closed at the motor was homed, where that was not here:
     /// the wind-up that the axis stands with now, after a motion, is not the one of then.
-    pub homed: Option<Homed<T>>,
+    pub homed: Option<HomedAt<T>>,
     /// Force that the friction's bristles hold the load with, N, where that is known: as the
     /// plan of the motion before has left them. Where a motion has just ended, `effort` is not
-    /// yet that of an axis at rest, and tells less of it.
+    /// yet that of a standstill, and says less of that force.
     pub held: Option<T>,
 }
 

@@ -2,10 +2,10 @@
 
 use std::vec::Vec;
 
-use libm::exp;
 use nalgebra::{DMatrix, DVector};
 
 use super::Unexplained;
+use crate::gaussian::bell;
 
 /// Deviations between two instants of [`over_gaussian`]. The sum is exact but for
 /// e^{−(2π/0.75 − ν)²/2} where what is averaged turns by ν radians in a deviation.
@@ -79,11 +79,8 @@ pub fn over_gaussian(
     smoothing: f64,
     mut each: impl FnMut(&Unexplained, f64),
 ) {
-    let bell = |i: i32| {
-        let deviations = STEP * f64::from(i);
-        exp(-0.5 * deviations * deviations)
-    };
-    let sum: f64 = (-SIDE..=SIDE).map(bell).sum();
+    let height = |i: i32| bell(STEP * f64::from(i));
+    let sum: f64 = (-SIDE..=SIDE).map(height).sum();
     for i in -SIDE..=SIDE {
         let turned = at.motor_speed * smoothing * STEP * f64::from(i);
         let there = Unexplained {
@@ -91,6 +88,6 @@ pub fn over_gaussian(
             position: at.position + travel * turned,
             ..*at
         };
-        each(&there, bell(i) / sum);
+        each(&there, height(i) / sum);
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use axis_scalar::Scalar;
-use compensator::{Along, Drive, DriveModel, Planner, PlannerConstants, SECTIONS};
+use compensator::{Drive, DriveModel, Planner, PlannerConstants, SECTIONS, StrokeSections};
 use lugre::Exponential;
 
 use super::data::{constant, literal, table};
@@ -86,7 +86,7 @@ fn axis<T: Exponential>(draft: &mut Draft, model: &DriveModel<T>) {
 }
 
 /// What depends on the position.
-fn along<T: Scalar>(draft: &mut Draft, along: &Along<T>) {
+fn along<T: Scalar>(draft: &mut Draft, along: &StrokeSections<T>) {
     let [least, per_length] = along.grid();
     let mut rows = String::new();
     for s in along.sections() {

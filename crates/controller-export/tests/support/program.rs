@@ -22,18 +22,17 @@ pub fn write(
     cycles: usize,
 ) -> Outcome<CSource> {
     let controller = ExportedController::of(predictors, name, LIMITS)?;
-    write_one(folder, predictors, &controller, precision, cycles, true)
+    write_one(folder, predictors, &controller, precision, (cycles, true))
 }
 
-/// The same of a controller with limits of its own; `strict` refuses cycles in which too little
-/// happens.
+/// The same of a controller with limits of its own, over a number of cycles; `strict` refuses those
+/// in which too little happens.
 pub fn write_one(
     folder: &Path,
     predictors: &Predictors,
     controller: &ExportedController,
     precision: Precision,
-    cycles: usize,
-    strict: bool,
+    (cycles, strict): (usize, bool),
 ) -> Outcome<CSource> {
     let source = c::export(controller, precision, None)?;
     let samples = samples(&predictors.axis, cycles, source.look_ahead.unwrap_or(1))?;

@@ -7,18 +7,17 @@
 mod exercise;
 mod form;
 mod law;
-mod noise;
 mod outside;
 mod rough;
 mod rough_kind;
 mod rough_stream;
 mod truth;
 
+pub use axis_sim::NoiseLevels as Noise;
 pub use exercise::{Exercise, exercise};
 pub use form::Form;
 pub use law::{Factor, Law, LawShape, LawVariable, Ranges};
 pub(crate) use law::{LAW, LAW_NAME};
-pub use noise::Noise;
 pub use outside::OUTSIDE;
 pub use rough_kind::{Entry, NoiseColour, Rough};
 pub use truth::Truth;
@@ -27,12 +26,10 @@ use axis_log::{Channel, Log};
 use axis_sim::effects::{ActiveEffect, EffectChannel};
 use axis_sim::{Axis, ClosedLoop, Measured, Recorder, ReplayError, Start};
 use compensator::NoCompensation;
+use discrepancy::SensorNoise;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use trajectories::Motion;
-
-/// Greatest internal step of a run that stands for a machine, s.
-pub const MACHINE_STEP: f64 = 2e-5;
 
 /// A machine with effects hidden in it.
 #[derive(Clone, Debug)]
@@ -67,6 +64,16 @@ impl Hidden {
         late(&self.effects, log)?
             .decimate(every)
             .map_err(ReplayError::from)
+    }
+}
+
+/// What the search would suppose of sensors with this noise, had it been told.
+pub fn supposed(noise: Noise) -> SensorNoise {
+    SensorNoise {
+        position: noise.position,
+        angle: noise.angle,
+        speed: noise.speed,
+        current: noise.current,
     }
 }
 

@@ -5,7 +5,7 @@ use axis_log::quality::outliers;
 use axis_log::{Channel, Log, LogError};
 use axis_sim::Measured;
 
-use super::noise::Noise;
+use super::Noise;
 use super::rough_kind::{Entry, NoiseColour, Rough};
 use super::rough_stream::Stream;
 
@@ -163,8 +163,8 @@ fn bridge(samples: &mut [f64], holes: &[usize]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::noise::Normal;
     use super::*;
+    use axis_sim::NormalNumbers;
 
     fn stream(rough: Rough) -> Vec<f64> {
         let mut stream = Stream::new(rough, 1.0, 1e-3, 5);
@@ -234,8 +234,8 @@ mod tests {
             position: 1e-8,
             ..Noise::GOOD
         };
-        let mut normal = Normal::new(2);
-        let quiet: Vec<f64> = (0..20_000).map(|_| 1e-8 * normal.next()).collect();
+        let mut normal = NormalNumbers::new(2);
+        let quiet: Vec<f64> = (0..20_000).map(|_| 1e-8 * normal.draw()).collect();
         let channel = |name: &str, samples| Channel::new(name, samples).unwrap();
         let time = (0..20_000).map(|k| 1e-3 * f64::from(k)).collect();
         let log = Log::new(vec![channel("t_s", time), channel("position_m", quiet)]).unwrap();

@@ -1,9 +1,9 @@
 //! The noise of one channel, sample by sample.
 
+use axis_sim::NormalNumbers;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha20Rng;
 
-use super::noise::Normal;
 use super::rough_kind::{NoiseColour, Rough};
 
 /// What one channel gets.
@@ -11,7 +11,7 @@ pub(super) struct Stream {
     rough: Rough,
     /// Standard deviation, resolution or size of outliers, in the channel's unit.
     size: f64,
-    normal: Normal,
+    normal: NormalNumbers,
     uniform: ChaCha20Rng,
     /// Of the filter, from one sample to the next.
     keeps: f64,
@@ -32,7 +32,7 @@ impl Stream {
         Self {
             rough,
             size: times * deviation,
-            normal: Normal::new(seed),
+            normal: NormalNumbers::new(seed),
             keeps: (-TAU * rough.corner * period).exp(),
             filtered: 0.0,
             turn: TAU * rough.line * period,
@@ -44,7 +44,7 @@ impl Stream {
     /// What is shown of a value.
     pub(super) fn show(&mut self, value: f64) -> f64 {
         match self.rough.colour {
-            NoiseColour::White => value + self.size * self.normal.next(),
+            NoiseColour::White => value + self.size * self.normal.draw(),
             NoiseColour::Coloured => value + self.size * self.coloured(),
             NoiseColour::Quantised if self.size > 0.0 => self.size * (value / self.size).round(),
             NoiseColour::Quantised => value,
@@ -63,7 +63,7 @@ impl Stream {
     /// Filtered noise of variance 1/2 and a line of as much.
     fn coloured(&mut self) -> f64 {
         let gain = (0.5 * (1.0 - self.keeps * self.keeps)).sqrt();
-        self.filtered = self.keeps * self.filtered + gain * self.normal.next();
+        self.filtered = self.keeps * self.filtered + gain * self.normal.draw();
         self.at += self.turn;
         self.filtered + self.at.sin()
     }

@@ -8,7 +8,7 @@ use thiserror::Error;
 use trajectories::TrajectoryError;
 
 use super::case::{Case, HiddenEffect};
-use crate::hidden::{Exercise, Hidden, LAW, Noise, OUTSIDE, exercise};
+use crate::hidden::{Exercise, Hidden, LAW, Noise, OUTSIDE, exercise, supposed};
 
 /// Why a bench cannot be set up.
 #[derive(Debug, Error)]
@@ -60,7 +60,7 @@ impl Bench {
             )?)
         };
         let templates = [template(false)?, template(true)?];
-        let good = Noise::good(axis).into();
+        let good = supposed(Noise::good(axis));
         Ok(Self {
             axis: axis.clone(),
             exercise: kind,

@@ -9,7 +9,7 @@ use trajectories::Program;
 use super::case::{Case, CaseSetting, Channels};
 use super::design::{shares, started};
 use super::sight::Sight;
-use crate::hidden::{Noise, Rough, Truth, exercise};
+use crate::hidden::{Noise, Rough, Truth, exercise, supposed};
 use crate::matrix::{BenchError, active, scale_at, times_size};
 
 /// What is the same for all cases of a plot.
@@ -75,7 +75,7 @@ impl Bench {
             Ok(LogSet::new(vec![(name, log, period)], &machine)?)
         };
         let templates = [template(0)?, template(1)?];
-        let good = Noise::good(&axis).into();
+        let good = supposed(Noise::good(&axis));
         let prediction = match setting.channels {
             Channels::Balance => None,
             _ => Some(Prediction::new(&machine, &templates[0], good)?),

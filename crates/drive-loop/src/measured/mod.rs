@@ -25,6 +25,7 @@ use record::Recorded;
 pub use crate::measured_plant::MeasuredPlant;
 pub use compare::{ComparedMode, Comparison};
 pub use compliance::{ComplianceLine, MeasuredCompliance, MeasuredShape};
+use traps::Response;
 pub use traps::Trap;
 
 /// How a response is measured.
@@ -219,17 +220,7 @@ impl MeasuredDrive {
             true => Estimator::ThreeSignals,
             false => Estimator::H1,
         };
-        let estimate = |output: Option<&[f64]>, differenced| {
-            let all = output.map(|output| -> Vec<Record<'_>> {
-                recorded.records(output, differenced).collect()
-            });
-            let found = all.map(|all| FrequencyResponse::of_all(&all, by, averaging));
-            found.transpose()
-        };
-        let angle = estimate(recorded.angle, true)?;
-        let speed = estimate(recorded.speed, false)?;
-        let all: Vec<Record<'_>> = recorded.records(&recorded.load, true).collect();
-        let load = FrequencyResponse::of_all(&all, by, averaging)?;
+        let Estimated { angle, speed, load } = Estimated::of(&recorded, by, averaging)?;
         let at = model_at::ModelAt::new(axis, recorded.position)?;
         let plant = MeasuredPlant::new(
             &at,
@@ -245,7 +236,12 @@ impl MeasuredDrive {
             true => margins(&recorded, averaging, &at, &plant)?,
             false => None,
         };
-        let traps = traps::traps(axis, &recorded, &shown, &at, margins.as_ref(), settings)?;
+        let response = Response {
+            recorded: &recorded,
+            shown: &shown,
+            at: &at,
+        };
+        let traps = traps::traps(axis, &response, margins.as_ref(), settings)?;
         // A measurement that is refused is not compared with the model.
         let is_usable = refused(&traps) == 0;
         let fitted = fit_settings(settings, plant.band_hz());
@@ -264,10 +260,7 @@ impl MeasuredDrive {
                 .and_then(|measured| MeasuredCompliance::of(axis, &at, &plant, &measured, &fitted)),
             false => Err("the measurement is not usable".to_owned()),
         };
-        let (compliance, compliance_missing) = match compliance {
-            Ok(found) => (Some(found), None),
-            Err(why) => (None, Some(why)),
-        };
+        let compliance_missing = compliance.as_ref().err().cloned();
         Ok(Self {
             schema: Self::SCHEMA,
             axis: axis.name.clone(),
@@ -289,7 +282,7 @@ impl MeasuredDrive {
             load: lines(&load),
             fit: fit.map(|fit| modes(&fit, shown.step_hz)),
             margins,
-            compliance,
+            compliance: compliance.ok(),
             compliance_missing,
             comparison,
             traps,
@@ -330,6 +323,31 @@ impl LoopSet {
             self.delay += median.max(0.0) / axis.period;
         }
         Ok(self)
+    }
+}
+
+/// Responses to the command.
+struct Estimated {
+    /// Of the motor's angle and speed, as far as they were recorded.
+    angle: Option<FrequencyResponse>,
+    speed: Option<FrequencyResponse>,
+    /// Of the load's position.
+    load: FrequencyResponse,
+}
+
+impl Estimated {
+    fn of(recorded: &Recorded<'_>, by: Estimator, averaging: Averaging) -> Result<Self, LoopError> {
+        let estimate = |output: &[f64], differenced| {
+            let all: Vec<Record<'_>> = recorded.records(output, differenced).collect();
+            FrequencyResponse::of_all(&all, by, averaging)
+        };
+        let angle = recorded.angle.map(|angle| estimate(angle, true));
+        let speed = recorded.speed.map(|speed| estimate(speed, false));
+        Ok(Self {
+            angle: angle.transpose()?,
+            speed: speed.transpose()?,
+            load: estimate(&recorded.load, true)?,
+        })
     }
 }
 

@@ -43,14 +43,20 @@ pub struct Trap {
     pub refused: bool,
 }
 
+/// A response with what it was measured on, at the model's place.
+pub(crate) struct Response<'a> {
+    pub recorded: &'a Recorded<'a>,
+    pub shown: &'a FrequencyResponse,
+    pub at: &'a ModelAt,
+}
+
 pub(crate) fn traps(
     axis: &Axis,
-    recorded: &Recorded<'_>,
-    shown: &FrequencyResponse,
-    at: &ModelAt,
+    response: &Response<'_>,
     margins: Option<&MeasuredMargins>,
     settings: &MeasureSettings,
 ) -> Result<Vec<Trap>, LoopError> {
+    let Response { recorded, at, .. } = *response;
     let mut all = Vec::new();
     let mut add = |refused: bool, what: String| all.push(Trap { what, refused });
     if !recorded.is_excited() {
@@ -73,7 +79,7 @@ pub(crate) fn traps(
     friction(axis, recorded, at, &mut add);
     limits(axis, recorded, &mut add);
     differing(margins, &mut add);
-    lines(axis, recorded, shown, at, settings, &mut add);
+    lines(axis, response, settings, &mut add);
     moving(axis, recorded, &mut add)?;
     Ok(all)
 }
@@ -99,12 +105,15 @@ fn differing(margins: Option<&MeasuredMargins>, add: &mut impl FnMut(bool, Strin
 /// A log that is too slow, lines that are too coarse, or too few that count.
 fn lines(
     axis: &Axis,
-    recorded: &Recorded<'_>,
-    shown: &FrequencyResponse,
-    at: &ModelAt,
+    response: &Response<'_>,
     settings: &MeasureSettings,
     add: &mut impl FnMut(bool, String),
 ) {
+    let Response {
+        recorded,
+        shown,
+        at,
+    } = *response;
     if (recorded.period / axis.period - 1.0).abs() > 1e-3 {
         add(
             true,

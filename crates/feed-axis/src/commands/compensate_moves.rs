@@ -10,8 +10,8 @@ use axis_pipeline::moves::{MoveRun, Moves, NamedMotion};
 use axis_pipeline::strategies::{LearnedValues, NONE, Predictors, StrategyKind};
 use axis_pipeline::{ErrorUnit, Figures};
 use axis_sim::Measured;
+use axis_sim::NoiseLevels;
 use clap::Args;
-use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result};
 use serde::Serialize;
 
@@ -134,7 +134,7 @@ pub fn run(context: &Context, options: &Options, kind: &'static StrategyKind) ->
     let closed_loop = closed_loop(&context.machine, options.exact)?;
     let progress = bar("compensate", 2 * motions.len() as u64);
     let made = |kind| -> Made {
-        let sensors = Noise::good(&context.machine).scaled(options.noise);
+        let sensors = NoiseLevels::good(&context.machine).scaled(options.noise);
         let mut sensors = sensors.sensors(context.seed);
         let sense = |seen: &mut Measured| {
             if options.noise > 0.0 {

@@ -8,9 +8,9 @@ use axis_pipeline::measured::Errors;
 use axis_pipeline::moves::{MoveRun, NamedMotion};
 use axis_pipeline::strategies::{NONE, Predictors, SharedMotion, StrategyKind};
 use axis_pipeline::{ErrorUnit, Figures};
+use axis_sim::NoiseLevels;
 use axis_sim::{Axis, Measured, SixDigits};
 use clap::Args;
-use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::Serialize;
 
@@ -87,7 +87,7 @@ impl Run<'_> {
         let progress = bar("compensate", (3 * times.len() * self.motions.len()) as u64);
         let made = |kind: &StrategyKind, model: Option<ModelHeat>| {
             let mut strategy = kind.strategy(self.predictors).into_diagnostic()?;
-            let mut sensors = Noise::good(machine)
+            let mut sensors = NoiseLevels::good(machine)
                 .scaled(self.noise)
                 .sensors(self.context.seed);
             let sense = |seen: &mut Measured| {

@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use axis_machine::{AxisMotion, Driven, MachineFile, MachineFileError, trace};
 use axis_pipeline::strategies::{Predictors, StrategyKind};
+use axis_sim::NoiseLevels;
 use axis_sim::mechanism::Freedom;
 use axis_sim::{Axis, ClosedLoop, Measured};
 use clap::Args;
-use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use toolpath::iso230_4::{DirectionFigures, NominalCircle, figures, quadrant_glitches};
 use toolpath::named::{CirclePath, CircleTest, Direction};
@@ -271,7 +271,7 @@ fn turn(options: &Options, axes: &[Axis; 2], direction: Direction) -> Result<Tur
         let law = (options.compensation)
             .compensator(&Predictors::of(&axes[i]), Arc::new(motion))
             .into_diagnostic()?;
-        let mut sensors = Noise::good(&axes[i])
+        let mut sensors = NoiseLevels::good(&axes[i])
             .scaled(options.noise)
             .sensors(options.seed.wrapping_mul(2).wrapping_add(i as u64));
         let noisy = options.noise > 0.0;

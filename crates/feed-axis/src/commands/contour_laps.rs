@@ -5,7 +5,7 @@ use axis_machine::{
     MeasuredCircle, fit_circles,
 };
 use axis_sim::Measured;
-use discover_matrix::hidden::Noise;
+use axis_sim::NoiseLevels;
 use rayon::prelude::*;
 use toolpath::iso230_4::{CircleFigures, NominalCircle, figures, quadrant_glitches};
 use toolpath::named::Direction;
@@ -246,7 +246,9 @@ fn laps<const D: usize>(
     let mut sensors: Vec<DriveSensors<'_>> = Vec::new();
     for (d, drive) in machine.drives().iter().enumerate() {
         let seed = run.seed.wrapping_mul(2).wrapping_add(d as u64);
-        let mut noise = Noise::good(&drive.nominal).scaled(run.noise).sensors(seed);
+        let mut noise = NoiseLevels::good(&drive.nominal)
+            .scaled(run.noise)
+            .sensors(seed);
         let noisy = run.noise > 0.0;
         sensors.push(Box::new(move |seen: &mut Measured| {
             if noisy {

@@ -51,15 +51,8 @@ pub fn with_control(
     frequency: Option<f64>,
 ) -> Result<String> {
     let mut document: DocumentMut = text.parse().into_diagnostic()?;
-    let has_sections = document.contains_key("mechanism");
     let kind = found.control.kind().name;
     let is_new = kind != machine.control.kind().name;
-    if is_new && !has_sections {
-        return Err(miette!(
-            "the controller is {kind}, and a file of schema 1 has the kind {} alone; valid: the axis file in schema 2",
-            machine.control.kind().name
-        ));
-    }
     let control = table(&mut document, "control")?;
     if is_new {
         let old = CONTROLS.iter().flat_map(|control| control.keys);
@@ -82,7 +75,7 @@ pub fn with_control(
     }
     set(control, "gains", "estimated".into());
     write_tolerances(&mut document, found)?;
-    if has_sections && !document.contains_key("simulation") {
+    if !document.contains_key("simulation") {
         let step = digits(1e6 * machine.period.min(machine.simulation.step));
         set(table(&mut document, "simulation")?, "step_us", step.into());
     }
@@ -103,13 +96,10 @@ pub fn with_tuned(text: &str, from: &Path, keys: Vec<TunedKey>) -> Result<(Strin
         None => text,
     };
     let mut document: DocumentMut = text.parse().into_diagnostic()?;
-    // A file of schema 1 has the current controllers among the others.
-    let has_actuator = document.contains_key("actuator");
     let mut all = Vec::new();
     for key in keys {
-        let section = if has_actuator { key.section } else { "control" };
         let value = written(key.value, 1.0, key.limits);
-        let table = table(&mut document, section)?;
+        let table = table(&mut document, key.section)?;
         let old = table.get(&key.key).and_then(Item::as_float);
         if old != Some(value) {
             // A comment behind the old value is about that value.

@@ -2,11 +2,11 @@
 
 use axis_pipeline::ErrorUnit;
 use axis_pipeline::residuals::{
-    AFTER, Compared, NetworkSettings, ResidualMethod, compare, contests, trained_basis,
+    AFTER, Compared, NetworkSettings, ResidualMethod, compare, comparisons, trained_basis,
 };
 use axis_pipeline::robustness::room;
 use axis_sim::Measured;
-use discover_matrix::hidden::Noise;
+use axis_sim::NoiseLevels;
 use miette::{IntoDiagnostic, Result};
 use serde::Serialize;
 
@@ -34,7 +34,7 @@ pub fn command(common: &Common) -> Result<()> {
     let _claim = context.claim()?;
     let (axis, machine) = (&context.axis, &context.machine);
     let count = if context.quick { 2 } else { 6 };
-    let contests = contests(axis, machine, context.seed, count).into_diagnostic()?;
+    let comparisons = comparisons(axis, machine, context.seed, count).into_diagnostic()?;
     // The network knows other machines than those it meets.
     let settings = NetworkSettings {
         seed: 1_000_000 + context.seed,
@@ -43,11 +43,12 @@ pub fn command(common: &Common) -> Result<()> {
     let network = trained_basis(axis, room(axis), &settings).into_diagnostic()?;
     let progress = bar(
         "residuals",
-        (contests.len() * ResidualMethod::ALL.len()) as u64,
+        (comparisons.len() * ResidualMethod::ALL.len()) as u64,
     );
-    let noise = Noise::good(machine);
+    let noise = NoiseLevels::good(machine);
     let sense = |seed: u64| -> Box<dyn FnMut(&mut Measured)> { Box::new(noise.sensors(seed)) };
-    let made = compare(axis, &contests, &network, &sense, || progress.inc(1)).into_diagnostic()?;
+    let made =
+        compare(axis, &comparisons, &network, &sense, || progress.inc(1)).into_diagnostic()?;
     progress.finish_and_clear();
     let path = context.out.join("residuals.json");
     let report = Report {

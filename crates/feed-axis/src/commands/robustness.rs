@@ -7,9 +7,9 @@ use axis_pipeline::ErrorUnit;
 use axis_pipeline::robustness::{Draws, Goal, Point, Sense, Study, make, studies};
 use axis_report::{Page, render};
 use axis_sim::Measured;
+use axis_sim::NoiseLevels;
 use campaign::{Column, Failure, Inputs, Job, Merged, Value};
 use clap::Args;
-use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result, WrapErr};
 
 use crate::context::{Claim, Common, Context};
@@ -90,7 +90,7 @@ impl AllDraws {
         let found = ranges.find(|(_, cases)| cases.contains(&case));
         let (row, cases) = found.ok_or("no such draw")?;
         let draw = row.draw(case - cases.start)?;
-        let noise = Noise::good(&draw.machine);
+        let noise = NoiseLevels::good(&draw.machine);
         let sense = |seed: u64| -> Box<dyn FnMut(&mut Measured)> { Box::new(noise.sensors(seed)) };
         let sense = row.noise.then_some(&sense as Sense<'_>);
         let point = make(&self.context.axis, row.strategy, &draw, sense);

@@ -13,9 +13,9 @@ use axis_sim::{
     Axis, ClosedLoop, Cycle, FlowRecorder, Measured, Recorder, RunStopped, SixDigits,
     excitation_channel,
 };
+use axis_sim::{MACHINE_STEP, NoiseLevels};
 use clap::Args;
 use compensator::Compensator;
-use discover_matrix::hidden::{MACHINE_STEP, Noise};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::Serialize;
 
@@ -99,7 +99,7 @@ pub fn command(options: &Options) -> Result<()> {
             bar.set_position(tracking.cycles);
         }
     };
-    let mut sensors = Noise::good(&context.axis)
+    let mut sensors = NoiseLevels::good(&context.axis)
         .scaled(options.noise)
         .sensors(context.seed);
     let sense = |seen: &mut Measured| {

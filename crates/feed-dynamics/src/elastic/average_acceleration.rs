@@ -9,7 +9,7 @@ pub(super) struct Course {
 }
 
 impl Course {
-    /// All that the start tells of the end of a step of `h` seconds.
+    /// The end of a step of `h` seconds with the acceleration of its start.
     #[inline]
     pub fn predicted(self, h: f64) -> Self {
         let moved = Self {

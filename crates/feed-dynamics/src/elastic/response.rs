@@ -37,8 +37,7 @@ impl ElasticDrive {
     pub fn receptance(
         &self,
         x: f64,
-        input: Side,
-        output: Side,
+        [input, output]: [Side; 2],
         angular_frequencies: &[f64],
     ) -> Result<Vec<Complex<f64>>, DriveError> {
         self.check_position(x)?;

@@ -6,7 +6,7 @@ use super::transmission::Share;
 use crate::NutErrors;
 use crate::stepper::Contact;
 
-/// What start and torque of a step tell of its end: load and force are left.
+/// The end of a step as far as start and torque determine it; load and force are still unknown.
 pub(super) struct Ahead<'a> {
     stepper: &'a ElasticStepper,
     errors: &'a NutErrors,

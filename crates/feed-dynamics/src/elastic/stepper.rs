@@ -26,17 +26,14 @@ use crate::{
 };
 
 impl ElasticStepper {
-    /// A step in which the force has the given share.
+    /// A step to what lies ahead of this state.
     #[inline]
     fn advance(
         &self,
         state: &mut ElasticState,
-        torque: f64,
-        errors: &NutErrors,
-        share: Share,
+        ahead: Ahead<'_>,
         load: impl FnMut(TableMotion) -> f64,
     ) -> LoadSearch {
-        let ahead = Ahead::new(self, state, torque, errors, share);
         let motion = |load: f64| {
             let y = ahead.load_course(load, ahead.force(load));
             TableMotion {
@@ -64,14 +61,16 @@ impl ElasticStepper {
         let mut rounds = 0;
         if state.flank != 0.0 {
             let start = state.clone();
-            let found = self.advance(state, torque, errors, Share::average(self.step), &mut load);
+            let ahead = Ahead::new(self, state, torque, errors, Share::average(self.step));
+            let found = self.advance(state, ahead, &mut load);
             if state.flank == start.flank {
                 return found;
             }
             *state = start;
             rounds = found.rounds;
         }
-        let mut found = self.advance(state, torque, errors, Share::implicit(self.step), load);
+        let ahead = Ahead::new(self, state, torque, errors, Share::implicit(self.step));
+        let mut found = self.advance(state, ahead, load);
         found.rounds += rounds;
         found
     }
@@ -137,7 +136,8 @@ impl TimeStepper for ElasticStepper {
         load: impl FnMut(TableMotion) -> f64,
     ) -> StepReport {
         let load = if errors.gap() == 0.0 {
-            self.advance(state, torque, errors, Share::average(self.step), load)
+            let ahead = Ahead::new(self, state, torque, errors, Share::average(self.step));
+            self.advance(state, ahead, load)
         } else {
             self.through_gap(state, torque, errors, load)
         };

@@ -87,7 +87,7 @@ fn the_motor_has_a_pole_and_a_zero_there() {
         let (pole, zero) = (drive.resonance(0.0), drive.antiresonance(0.0));
         // Without damping there is no value on the pole itself.
         let inverse = |w| {
-            let response = drive.receptance(0.0, Side::Motor, Side::Motor, &[w]);
+            let response = drive.receptance(0.0, [Side::Motor, Side::Motor], &[w]);
             response.map_or(0.0, |h| 1.0 / h[0].re)
         };
         let found = crossing(0.9 * zero, 0.5 * (zero + pole), |w| 1.0 / inverse(w));
@@ -115,7 +115,7 @@ proptest! {
             * (1.0 + stiffness / load / (w * w)) * (1.0 + w * beta).powi(2);
         for (i, input) in [Side::Motor, Side::Load].into_iter().enumerate() {
             for (o, output) in [Side::Motor, Side::Load].into_iter().enumerate() {
-                let h = drive.receptance(0.0, input, output, &[w]).unwrap()[0];
+                let h = drive.receptance(0.0, [input, output], &[w]).unwrap()[0];
                 let off = (h - inverse[(o, i)]).norm() / h.norm();
                 prop_assert!(off < rounding, "{off:e} of {rounding:e}");
             }
@@ -132,7 +132,10 @@ fn the_response_follows_the_stiffness_along_the_way() {
         let k = 3e5 * (1.0 / (0.15 + x) + 1.0 / (1.05 - x));
         let fixed = self::drive([there[0], there[1], there[2], k, 1e-5]);
         assert!(relative(drive.resonance(x), fixed.resonance(0.0)) < 1e-15);
-        let at = |d: &ElasticDrive| d.receptance(x, Side::Motor, Side::Load, &[1500.0]).unwrap()[0];
+        let at = |d: &ElasticDrive| {
+            d.receptance(x, [Side::Motor, Side::Load], &[1500.0])
+                .unwrap()[0]
+        };
         assert!((at(&drive) - at(&fixed)).norm() < 1e-13 * at(&fixed).norm());
     }
 }
@@ -176,12 +179,12 @@ fn parameters_and_positions_are_checked_by_name() {
         assert!(text.starts_with("position = "), "{text}");
         assert!(
             drive(good)
-                .receptance(x, Side::Motor, Side::Load, &[1.0])
+                .receptance(x, [Side::Motor, Side::Load], &[1.0])
                 .is_err()
         );
     }
     for bad in [f64::NAN, f64::INFINITY, 1e300] {
-        let error = drive(good).receptance(0.0, Side::Motor, Side::Load, &[bad]);
+        let error = drive(good).receptance(0.0, [Side::Motor, Side::Load], &[bad]);
         let text = error.unwrap_err().to_string();
         assert!(text.starts_with("angular frequency = "), "{text}");
     }
@@ -196,7 +199,7 @@ fn parameters_and_positions_are_checked_by_name() {
     };
     assert!(stepper.settled(0.0, &fast).is_err());
     assert!(stepper.settled(-1e3, &Settled::default()).is_ok());
-    let free = drive(good).receptance(0.0, Side::Motor, Side::Motor, &[0.0]);
+    let free = drive(good).receptance(0.0, [Side::Motor, Side::Motor], &[0.0]);
     assert!(matches!(free, Err(DriveError::Singular { .. })));
 }
 

@@ -13,12 +13,12 @@ fn low_frequency_moves_the_total_inertia() {
     for coupling in COUPLINGS {
         for x in [0.0, 0.6, 1.234] {
             let h = drive
-                .receptance(x, coupling, Coordinate::Motor, Coordinate::Motor, &[w])
+                .receptance(x, coupling, [Coordinate::Motor, Coordinate::Motor], &[w])
                 .unwrap()[0];
             let rigid = -1.0 / (drive.total_inertia() * w * w);
             assert!(relative(h.re, rigid) < 1e-5, "{h} {rigid}");
             let table = drive
-                .receptance(x, coupling, Coordinate::Motor, Coordinate::Table, &[w])
+                .receptance(x, coupling, [Coordinate::Motor, Coordinate::Table], &[w])
                 .unwrap()[0];
             assert!(relative(table.re, rigid * drive.travel_per_radian()) < 5e-5);
         }
@@ -47,7 +47,7 @@ fn the_rigid_motion_is_right_at_any_low_frequency() {
         for x in [0.0, 0.6, 0.6 + 1.51e-4, 1.234, 1.5] {
             for (input, a) in places {
                 for (output, b) in places {
-                    let h = drive.receptance(x, coupling, input, output, &ws).unwrap();
+                    let h = drive.receptance(x, coupling, [input, output], &ws).unwrap();
                     for (h, w) in h.into_iter().zip(ws) {
                         let off = (h * (inertia * w * w) / (a * b) + 1.0).norm();
                         worst = worst.max(off - 4.5e-5 * w * w);
@@ -66,7 +66,7 @@ fn a_frequency_that_is_no_number_is_refused_by_name() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300] {
         let ws = [1.0, bad];
         let (motor, table) = (Coordinate::Motor, Coordinate::Table);
-        let error = drive().receptance(0.6, COUPLINGS[0], motor, table, &ws);
+        let error = drive().receptance(0.6, COUPLINGS[0], [motor, table], &ws);
         let text = error.unwrap_err().to_string();
         assert!(text.starts_with("angular frequency = "), "{text}");
     }
@@ -77,7 +77,7 @@ fn reciprocal_and_built_from_the_modes() {
     let drive = drive();
     let (x, coupling) = (0.81, COUPLINGS[0]);
     let ws: Vec<f64> = (1..60).map(|i| 37.0 * f64::from(i)).collect();
-    let h = |a, b| drive.receptance(x, coupling, a, b, &ws).unwrap();
+    let h = |a, b| drive.receptance(x, coupling, [a, b], &ws).unwrap();
     let forth = h(Coordinate::Motor, Coordinate::Screw(7));
     let back = h(Coordinate::Screw(7), Coordinate::Motor);
     // Modal sum: Σ φ_a φ_b / (ω_i² + iωβω_i² − ω²).
@@ -115,7 +115,7 @@ fn peaks_stand_at_the_modes() {
                 .map(|i| w * (1.0 + 5e-4 * f64::from(i)))
                 .collect();
             let h = drive
-                .receptance(0.6, coupling, Coordinate::Motor, Coordinate::Motor, &grid)
+                .receptance(0.6, coupling, [Coordinate::Motor, Coordinate::Motor], &grid)
                 .unwrap();
             let best = (0..grid.len()).max_by(|&i, &j| h[i].norm().total_cmp(&h[j].norm()));
             assert!(relative(grid[best.unwrap()], w) < 5e-4, "{w}");
@@ -128,7 +128,7 @@ fn refuses_what_has_no_answer() {
     let drive = drive();
     let ask = |x, node, w| {
         let c = COUPLINGS[0];
-        drive.receptance(x, c, Coordinate::Screw(node), Coordinate::Table, &[w])
+        drive.receptance(x, c, [Coordinate::Screw(node), Coordinate::Table], &[w])
     };
     let zero = ask(0.6, 3, 0.0).unwrap_err();
     assert!(matches!(zero, DriveError::Singular { .. }));

@@ -75,11 +75,7 @@ fn positions_off_the_screw_are_refused() {
             ));
             assert!(drive().modes(x, coupling).is_err());
             let at = [Coordinate::Motor, Coordinate::Table];
-            assert!(
-                drive()
-                    .receptance(x, coupling, at[0], at[1], &[1.0])
-                    .is_err()
-            );
+            assert!(drive().receptance(x, coupling, at, &[1.0]).is_err());
             let stepper = ImplicitStepper::new(&drive(), coupling, 1e-4).unwrap();
             let error = stepper.settled(x, &Settled::default()).unwrap_err();
             assert!(matches!(error, DriveError::OffScrew { .. }), "{error}");

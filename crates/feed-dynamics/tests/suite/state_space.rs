@@ -56,7 +56,9 @@ fn its_transfer_function_is_the_receptance() {
             let transfer = space.transfer(w).unwrap();
             for (column, input) in places.into_iter().enumerate() {
                 for (row, (output, quantity)) in outputs.iter().enumerate() {
-                    let h = drive.receptance(x, coupling, input, *output, &[w]).unwrap()[0];
+                    let h = drive
+                        .receptance(x, coupling, [input, *output], &[w])
+                        .unwrap()[0];
                     let exact = expected(h, *quantity, w);
                     worst = worst.max((transfer[(row, column)] - exact).norm() / exact.norm());
                 }
@@ -81,14 +83,14 @@ fn an_elastic_drive_has_the_same() {
         for (column, input) in sides.into_iter().enumerate() {
             for (row, (output, quantity)) in outputs.iter().enumerate() {
                 // In closed form.
-                let h = drive.receptance(x, input, *output, &[w]).unwrap()[0];
+                let h = drive.receptance(x, [input, *output], &[w]).unwrap()[0];
                 let exact = expected(h, *quantity, w);
                 assert!((transfer[(row, column)] - exact).norm() < 1e-9 * exact.norm());
             }
-            let load = drive.mobility(x, input, Side::Load, &[w]).unwrap()[0];
-            let h = drive.receptance(x, input, Side::Load, &[w]).unwrap()[0];
+            let load = drive.mobility(x, [input, Side::Load], &[w]).unwrap()[0];
+            let h = drive.receptance(x, [input, Side::Load], &[w]).unwrap()[0];
             assert_eq!(load, h * Complex::new(0.0, w));
-            let load = drive.accelerance(x, input, Side::Load, &[w]).unwrap()[0];
+            let load = drive.accelerance(x, [input, Side::Load], &[w]).unwrap()[0];
             assert_eq!(load, h * Complex::new(-w * w, 0.0));
         }
     }
@@ -131,14 +133,16 @@ fn mobility_and_accelerance_at_the_ends_of_the_scale() {
     let motor = Coordinate::Motor;
     let coupling = NutCoupling::ShapeFunctions;
     let low = drive
-        .accelerance(0.6, coupling, motor, motor, &[1.0])
+        .accelerance(0.6, coupling, [motor, motor], &[1.0])
         .unwrap()[0];
     assert!((low * drive.total_inertia() - 1.0).norm() < 1e-5);
-    let slow = drive.mobility(0.6, coupling, motor, motor, &[1.0]).unwrap()[0];
+    let slow = drive
+        .mobility(0.6, coupling, [motor, motor], &[1.0])
+        .unwrap()[0];
     assert!((slow - low / Complex::new(0.0, 1.0)).norm() < 1e-15 * slow.norm());
     let table = Coordinate::Table;
     let high = drive
-        .accelerance(0.6, coupling, table, table, &[1e8])
+        .accelerance(0.6, coupling, [table, table], &[1e8])
         .unwrap()[0];
     assert!((high * 515.0 - 1.0).norm() < 1e-4);
 }

@@ -22,7 +22,16 @@ impl<T: Scalar> Inverter<T> {
     ) -> Dq<T> {
         let currents = phase_currents(i0, rotor);
         let voltage = self.averaged(duties, currents);
-        self.hold(motor, i0, rotor, T::ZERO, voltage, self.period)
+        self.hold(
+            motor,
+            i0,
+            rotor,
+            Held {
+                from: T::ZERO,
+                duration: self.period,
+                voltage,
+            },
+        )
     }
 
     /// The currents (A) a period after `i0` with the switched voltages.
@@ -36,23 +45,21 @@ impl<T: Scalar> Inverter<T> {
         let mut i = i0;
         let mut t = T::ZERO;
         for segment in self.switched(duties, phase_currents(i0, rotor)) {
-            i = self.hold(motor, i, rotor, t, segment.voltage, segment.duration);
+            let held = Held {
+                from: t,
+                duration: segment.duration,
+                voltage: segment.voltage,
+            };
+            i = self.hold(motor, i, rotor, held);
             t += segment.duration;
         }
         i
     }
 
-    /// Holds a stator voltage from `t` for `duration`: midpoint steps, each
-    /// seeing the voltage from the rotor's angle in its middle.
-    fn hold(
-        &self,
-        motor: &Pmsm<T>,
-        i0: Dq<T>,
-        rotor: Rotor<T>,
-        t: T,
-        voltage: AlphaBeta<T>,
-        duration: T,
-    ) -> Dq<T> {
+    /// The currents after a voltage was held: midpoint steps, each seeing the voltage from the
+    /// rotor's angle in its middle.
+    fn hold(&self, motor: &Pmsm<T>, i0: Dq<T>, rotor: Rotor<T>, held: Held<T>) -> Dq<T> {
+        let duration = held.duration;
         // At least one, so that a NaN duration is seen in the currents.
         let share = T::of(PIECES) * (duration / self.period);
         let mut pieces = T::ONE;
@@ -62,13 +69,20 @@ impl<T: Scalar> Inverter<T> {
         let h = duration / pieces;
         let (mut i, mut piece) = (i0, T::ZERO);
         while piece < pieces {
-            let middle = t + (piece + T::HALF) * h;
-            let u = voltage.park(rotor.angle_after(motor, middle));
+            let middle = held.from + (piece + T::HALF) * h;
+            let u = held.voltage.park(rotor.angle_after(motor, middle));
             i = motor.step(i, u, rotor.speed, h);
             piece += T::ONE;
         }
         i
     }
+}
+
+/// A stator voltage that is held from a time of the period on, s.
+struct Held<T> {
+    from: T,
+    duration: T,
+    voltage: AlphaBeta<T>,
 }
 
 fn phase_currents<T: Scalar>(i: Dq<T>, rotor: Rotor<T>) -> Phases<T> {

@@ -66,7 +66,7 @@ pub struct OptimisationHistory {
 trait Objective {
     /// For an exchange of points `i` and `j` in each column: the change.
     fn changes(&mut self, i: usize, j: usize, out: &mut [f64]);
-    /// Makes the exchange in column `dim`, which was told to bring `change`.
+    /// Makes the exchange in column `dim`; `change` is what `changes` found for it.
     fn exchange(&mut self, i: usize, j: usize, dim: usize, change: f64);
     /// The sum that `changes` refers to, as it is now.
     fn sum(&self) -> f64;

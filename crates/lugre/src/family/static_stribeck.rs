@@ -7,7 +7,7 @@ use super::steady::{SteadyState, check};
 use super::{FrictionLaw, pressing};
 use crate::exponential::Exponential;
 
-/// What stands for the sign of the speed.
+/// The smooth function in place of the sign of the speed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]

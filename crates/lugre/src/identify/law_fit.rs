@@ -12,9 +12,9 @@ use super::series::correlation_time;
 /// The most numbers that a law may have, its offset with them.
 const MOST: usize = 32;
 
-/// What the contact did before a record.
+/// State of the contact at the first sample of a record, by what it did before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Before {
+pub enum BeforeRecord {
     /// Nothing: its springs are unloaded.
     #[default]
     Unloaded,
@@ -38,7 +38,7 @@ pub struct FrictionRecord<'a> {
     /// proportion to the other records'; 1 of a single record.
     pub noise: f64,
     /// What the contact did before.
-    pub before: Before,
+    pub before: BeforeRecord,
     /// So many samples at the beginning are simulated, but not compared: a motion that slides
     /// in them makes what was before it forgotten.
     pub skip: usize,
@@ -104,7 +104,7 @@ impl<L> LawFit<L> {
 /// that the records leave open.
 ///
 /// ```
-/// use lugre::identify::{Before, FrictionRecord, MeasuredMotion, UnknownNumbers, identify_law};
+/// use lugre::identify::{BeforeRecord, FrictionRecord, MeasuredMotion, UnknownNumbers, identify_law};
 /// use lugre::{BristleParameters, Dahl, DahlOnset, FrictionLaw, SteadyState};
 ///
 /// let dahl = |level, stiffness, exponent| Dahl::new(BristleParameters {
@@ -125,7 +125,7 @@ impl<L> LawFit<L> {
 ///     motion: MeasuredMotion::Speed(&speed),
 ///     force: &force,
 ///     noise: 1.0,
-///     before: Before::Unloaded,
+///     before: BeforeRecord::Unloaded,
 ///     skip: 0,
 /// };
 /// let unknown = UnknownNumbers { stribeck: false, viscous_terms: 0, ..UnknownNumbers::default() };
@@ -408,12 +408,12 @@ impl<'a, L: Identifiable> Trial<'a, L> {
     }
 }
 
-fn law_after<L: Identifiable>(law: &L, before: Before) -> L::State {
+fn law_after<L: Identifiable>(law: &L, before: BeforeRecord) -> L::State {
     // As slow as a sliding contact can be: the bristles are at the break-away level.
     match before {
-        Before::Unloaded => L::State::default(),
-        Before::Forward => law.settled(f64::MIN_POSITIVE),
-        Before::Backward => law.settled(-f64::MIN_POSITIVE),
+        BeforeRecord::Unloaded => L::State::default(),
+        BeforeRecord::Forward => law.settled(f64::MIN_POSITIVE),
+        BeforeRecord::Backward => law.settled(-f64::MIN_POSITIVE),
     }
 }
 

@@ -32,7 +32,7 @@ pub use constant_speeds::{VIBRATION_LIMIT, identify_static, identify_static_with
 pub use coulomb::identify_coulomb;
 pub use error::FrictionIdentifyError;
 pub use estimate::ParameterEstimate;
-pub use law_fit::{Before, FrictionRecord, LawEstimate, LawFit, identify_law};
+pub use law_fit::{BeforeRecord, FrictionRecord, LawEstimate, LawFit, identify_law};
 pub use least_squares::FitOutcome;
 pub use numbers::{Identifiable, IdentifiableOnset, Number, NumberKind, UnknownNumbers};
 pub use presliding::{MeasuredMotion, PreslidingFit, PreslidingRecord, identify_presliding};

@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn good_refusals_pass_and_bad_ones_do_not() {
-        let good = miette!("a.toml:12: `screw.lead` is -1; valid: a number above zero");
+        let good = miette!("a.toml:12: `mechanism.lead` is -1; valid: a number above zero");
         assert_eq!(judge(&good, "a.toml", true), Ok(()));
         for (bad, what) in [
             (miette!(""), "is empty"),

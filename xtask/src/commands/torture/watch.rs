@@ -48,73 +48,88 @@ pub fn inputs(options: &Options, until: Instant) -> Result<u64> {
     } else {
         bar("inputs", options.inputs)
     };
+    let watch = Watch {
+        options,
+        kinds: &kinds,
+        until,
+        bar: &progress,
+    };
     let start = Instant::now();
     let mut index = options.from;
     while index < end && Instant::now() < until {
         let count = BLOCK.min(end - index);
-        index = block(options, &kinds, index, count, until, &mut sum, &progress)?;
+        index = watch.block(index, count, &mut sum)?;
     }
     progress.finish_and_clear();
     summary(&kinds, &sum, start.elapsed())?;
-    told(&faults)?;
+    list(&faults)?;
     Ok(sum.counts.iter().map(|[.., faults]| faults).sum())
 }
 
-/// Has a worker judge `count` inputs; the number of the next one.
-fn block(
-    options: &Options,
-    kinds: &[Box<dyn Kind>],
-    index: u64,
-    count: u64,
+/// What holds for all workers.
+struct Watch<'a> {
+    options: &'a Options,
+    kinds: &'a [Box<dyn Kind>],
+    /// When to end.
     until: Instant,
-    sum: &mut Sum,
-    bar: &ProgressBar,
-) -> Result<u64> {
-    let record = options.out.join(PROGRESS);
-    feed_axis::output::remove(&record)?;
-    let mut child = start(options, index, count)?;
-    let mut at = (u64::MAX, 0.0);
-    let ended: Result<Option<ExitStatus>> = loop {
-        if let Some(status) = child.try_wait().into_diagnostic()? {
-            break Ok(Some(status));
-        }
-        std::thread::sleep(Duration::from_millis(20));
-        let now = noted(&record).map_or(u64::MAX, |progress| progress.index);
-        if now != u64::MAX {
-            bar.set_position(now - options.from);
-        }
-        let used = processor_time(child.id());
-        if now != at.0 {
-            at = (now, used);
-        }
-        let (hangs, late) = (used - at.1 > PATIENCE, Instant::now() > until);
-        if hangs || late {
-            child
-                .kill()
-                .and_then(|()| child.wait().map(drop))
-                .into_diagnostic()?;
-            break Ok(None);
-        }
-    };
-    let status = ended?;
-    let said = std::fs::read_to_string(options.out.join("worker.txt")).unwrap_or_default();
-    let Some(found) = noted(&record) else {
-        return Err(miette!("a worker did not begin: {said}"));
-    };
-    add(sum, &found);
-    match status {
-        Some(status) if status.success() => Ok(found.index),
-        None if Instant::now() > until => Ok(found.index),
-        Some(_) if said.contains("cannot ") => Err(miette!("a worker failed: {said}")),
-        other => {
-            let (kind, input) = again(options, kinds, found.index)?;
-            let what = match other {
-                Some(status) => format!("ends the process ({status}): {}", said.trim()),
-                None => format!("takes more than {PATIENCE} s of processor time"),
-            };
-            keep(options, found.index, kinds[kind].name(), &input, &what)?;
-            sum.counts[kind][2] += 1;
-            Ok(found.index + 1)
+    bar: &'a ProgressBar,
+}
+
+impl Watch<'_> {
+    /// Has a worker judge `count` inputs; the number of the next one.
+    fn block(&self, index: u64, count: u64, sum: &mut Sum) -> Result<u64> {
+        let Self {
+            options,
+            kinds,
+            until,
+            bar,
+        } = *self;
+        let record = options.out.join(PROGRESS);
+        feed_axis::output::remove(&record)?;
+        let mut child = start(options, index, count)?;
+        let mut at = (u64::MAX, 0.0);
+        let ended: Result<Option<ExitStatus>> = loop {
+            if let Some(status) = child.try_wait().into_diagnostic()? {
+                break Ok(Some(status));
+            }
+            std::thread::sleep(Duration::from_millis(20));
+            let now = noted(&record).map_or(u64::MAX, |progress| progress.index);
+            if now != u64::MAX {
+                bar.set_position(now - options.from);
+            }
+            let used = processor_time(child.id());
+            if now != at.0 {
+                at = (now, used);
+            }
+            let (hangs, late) = (used - at.1 > PATIENCE, Instant::now() > until);
+            if hangs || late {
+                child
+                    .kill()
+                    .and_then(|()| child.wait().map(drop))
+                    .into_diagnostic()?;
+                break Ok(None);
+            }
+        };
+        let status = ended?;
+        let said = std::fs::read_to_string(options.out.join("worker.txt")).unwrap_or_default();
+        let Some(found) = noted(&record) else {
+            return Err(miette!("a worker did not begin: {said}"));
+        };
+        add(sum, &found);
+        match status {
+            Some(status) if status.success() => Ok(found.index),
+            None if Instant::now() > until => Ok(found.index),
+            Some(_) if said.contains("cannot ") => Err(miette!("a worker failed: {said}")),
+            other => {
+                let (kind, input) = again(options, kinds, found.index)?;
+                let what = match other {
+                    Some(status) => format!("ends the process ({status}): {}", said.trim()),
+                    None => format!("takes more than {PATIENCE} s of processor time"),
+                };
+                keep(options, found.index, kinds[kind].name(), &input, &what)?;
+                sum.counts[kind][2] += 1;
+                Ok(found.index + 1)
+            }
         }
     }
 }
@@ -191,7 +206,7 @@ fn summary(kinds: &[Box<dyn Kind>], sum: &Sum, took: Duration) -> Result<()> {
 }
 
 /// Tells the faults, those that read alike once.
-fn told(folder: &Path) -> Result<()> {
+fn list(folder: &Path) -> Result<()> {
     let mut alike: BTreeMap<String, (u64, String)> = BTreeMap::new();
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let text = std::fs::read_to_string(entry.path().join("fault.txt")).unwrap_or_default();

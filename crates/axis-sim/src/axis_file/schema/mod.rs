@@ -12,25 +12,24 @@ mod tests;
 
 use serde_json::{Map, Value, json};
 
-use super::first_keys::{SHORT_KINDS, loop_keys};
 use super::keys::keys;
-use super::layout::Layout;
+use super::layout::{Layout, Section};
+use super::loop_keys::loop_keys;
 use super::registry::Registry;
 use crate::actuator::Effort;
 use crate::freedom::Freedom;
-use crate::part::{Key, PartKind};
+use crate::part::PartKind;
 use crate::rating::rating_keys;
 use crate::thermal::THERMAL_KEYS;
 use key::{closed, without};
-use parts::{SECTIONS, list, part_tables};
+use parts::{list, part_tables};
 
-/// Tables of a file with a section for each part that follow how the load moves.
+/// Tables that follow how the load moves.
 const BY_FREEDOM: [&str; 3] = ["stroke", "balance", "trajectory"];
 
 impl Registry {
     /// The JSON Schema (draft 2020-12, <https://json-schema.org/draft/2020-12>) of the axis
-    /// files that [`Axis::read_with`](crate::Axis::read_with) takes with this registry, of
-    /// both schemas. A file that it refuses is refused by the reader; the reader refuses more,
+    /// files that [`Axis::read_with`](crate::Axis::read_with) takes with this registry. A file that it refuses is refused by the reader; the reader refuses more,
     /// where values contradict each other.
     pub fn json_schema(&self) -> Value {
         let mut defs = Map::new();
@@ -42,38 +41,25 @@ impl Registry {
                 self.by_movement(freedom, effort, &mut defs);
             }
         }
-        defs.insert("sections".to_owned(), self.file_of_sections());
-        for kind in SHORT_KINDS {
-            if let Some(file) = self.short_file(kind) {
-                defs.insert(format!("schema-1.{kind}"), file);
-            }
-        }
-        let has = |table: &str| json!({ "required": [table] });
-        let rigid =
-            json!({ "properties": { "kind": { "const": SHORT_KINDS[1] } }, "required": ["kind"] });
-        let short = |kind: &str| reference(&format!("schema-1.{kind}"));
-        json!({
-            "$schema": "https://json-schema.org/draft/2020-12/schema",
-            "title": "Axis file",
-            "description": "A feed axis and its controller. The last part of a key is its unit. Made from the program's registry: `feed-axis schema axis`.",
-            "type": "object",
-            "if": { "anyOf": SECTIONS.map(has) },
-            "then": reference("sections"),
-            "else": { "if": rigid, "then": short(SHORT_KINDS[1]), "else": short(SHORT_KINDS[0]) },
-            "$defs": defs,
-        })
+        let mut file = self.file();
+        file["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
+        file["title"] = json!("Axis file");
+        file["description"] = json!(
+            "A feed axis and its controller. The last part of a key is its unit. Made from the program's registry: `feed-axis schema axis`."
+        );
+        file["$defs"] = Value::Object(defs);
+        file
     }
 
-    /// What a file with a section for each part has.
-    fn file_of_sections(&self) -> Value {
+    /// The tables and keys of the file.
+    fn file(&self) -> Value {
         let layout = self.any_layout();
         let keys = layout.map_or(Vec::new(), |layout| {
             keys(&layout, Freedom::Linear, Effort::Current)
         });
         let mut file = closed(&keys);
-        let tables = ["mechanism", "actuator", "control", "friction"];
-        for name in tables {
-            file["properties"][name] = reference(name);
+        for section in Section::ALL.map(Section::name) {
+            file["properties"][section] = reference(section);
         }
         file["properties"]["load"] = list(reference("load"));
         file["properties"]["effects"] = list(reference("effect"));
@@ -132,29 +118,15 @@ impl Registry {
         }
     }
 
-    /// A file of the first schema.
-    fn short_file(&self, kind: &str) -> Option<Value> {
-        let layout = Layout::short(kind, self, Vec::new())?;
-        let effort = layout.actuator.example().map(|part| part.effort());
-        let all: Vec<Key> = keys(&layout, Freedom::Linear, effort.unwrap_or(Effort::Current));
-        let mut file = closed(&all);
-        file["properties"]["load"] = list(reference("load"));
-        file["properties"]["effects"] = list(reference("effect"));
-        file["properties"]["tolerances"] = reference("tolerances");
-        file["properties"]["sensors"] = reference("sensors");
-        file["properties"]["thermal"] = reference("thermal");
-        file["properties"]["rating"] = reference("rating");
-        Some(file)
-    }
-
     /// The first kind of each section.
     fn any_layout(&self) -> Option<Layout> {
-        Some(Layout::sections(
-            self.mechanisms.first()?,
-            self.actuators.first()?,
-            self.controls.first()?,
-            self.frictions.first()?,
-        ))
+        Some(Layout {
+            mechanism: self.mechanisms.first()?,
+            actuator: self.actuators.first()?,
+            control: self.controls.first()?,
+            friction: self.frictions.first()?,
+            loads: Vec::new(),
+        })
     }
 
     fn mechanisms_that(&self, freedom: Freedom) -> Vec<&'static str> {

@@ -2,18 +2,15 @@
 
 use serde_json::{Map, Value, json};
 
-use super::super::first_keys::loop_keys;
 use super::super::keys::SHARE;
 use super::super::layout::kinds_key;
+use super::super::loop_keys::loop_keys;
 use super::super::registry::Registry;
 use super::key::{closed, properties};
 use super::reference;
 use crate::effects::Effect;
 use crate::freedom::Freedom;
 use crate::part::{Key, Known, PartKind, number, text_of};
-
-/// The tables whose presence tells that a file has a section for each part.
-pub(super) const SECTIONS: [&str; 2] = ["mechanism", "actuator"];
 
 /// Definitions of the parts' tables, by kind.
 pub(super) fn part_tables(registry: &Registry, defs: &mut Map<String, Value>) {

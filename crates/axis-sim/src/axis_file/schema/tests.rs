@@ -139,9 +139,9 @@ fn what_the_reader_refuses_of_keys_and_limits_the_schema_refuses() {
         insert(belt, "[stroke]", "start_deg = 1"),
         insert(joint, "[stroke]", "start_mm = 1"),
         insert(joint, "[control]", "following_error_limit_mm = 1"),
-        insert(paper, "[screw]", "no_such_key = 1"),
+        insert(paper, "[mechanism]", "no_such_key = 1"),
         format!("{paper}\n[mechanisms]\nkind = \"belt\"\n"),
-        paper.replacen("schema = 1", "schema = 3", 1),
+        paper.replacen("schema = 2", "schema = 3", 1),
     ];
     for (k, text) in cases.iter().enumerate() {
         let refused = Axis::parse("case", text);

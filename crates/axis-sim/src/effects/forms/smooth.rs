@@ -43,7 +43,7 @@ const PARAMETERS: [EffectParameter; OWN + 4] = [
         Measure::Speed,
         Nature::Speed([1e-4, 1e-3, 1e-2], [1e-4, 1e-2]),
         1e-3,
-        // A fiftieth of the paper's speed: above that it is no onset, but a curve over all speeds, which makes up for
+        // A fiftieth of the reference machine's speed: above that it is no onset, but a curve over all speeds, which makes up for
         // viscous friction and moves the level.
         [1e-8, 2.4e-3],
     ),

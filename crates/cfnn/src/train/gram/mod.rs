@@ -22,7 +22,7 @@ use std::vec::Vec;
 use rayon::prelude::*;
 
 use self::plan::{Plan, Rectangle, triangle_index};
-use self::tile::{Panels, Tile, cut};
+use self::tile::{Panels, Samples, Tile, cut};
 use super::block::{BlockWork, Layout};
 use super::cholesky::Symmetric;
 use crate::simd::Vectors;
@@ -65,6 +65,7 @@ impl Gram {
     /// samples: the order of each sum does not depend on the threads.
     pub fn add(&mut self, layout: &Layout, blocks: &[BlockWork]) {
         let vectors = Vectors::detect();
+        let samples = Samples { layout, blocks };
         let plan = &self.plan;
         let mut tiles = Vec::new();
         let mut rest = self.values.as_mut_slice();
@@ -79,33 +80,23 @@ impl Gram {
             .into_par_iter()
             .with_max_len(1)
             .for_each_init(Panels::new, |panels, tile| {
-                tile.add(plan, layout, blocks, panels, vectors);
+                tile.add(plan, samples, panels, vectors);
             });
     }
 
-    /// Writes the lower triangle of `factor JᵀJ + damping I`.
+    /// Writes the lower triangle of `factor JᵀJ + damping I`, for the parameters that are trained.
     pub fn write_lower(&self, layout: &Layout, factor: f64, damping: f64, into: &mut Symmetric) {
         into.fill(|c, column| {
-            self.write_column(layout, factor, c, column);
-            column[c] += damping;
-        });
-    }
-
-    /// The same of some rows and columns alone, which rise.
-    pub fn write_lower_of(
-        &self,
-        free: &[usize],
-        layout: &Layout,
-        factor: f64,
-        damping: f64,
-        into: &mut Symmetric,
-    ) {
-        into.fill(|c, column| {
-            // Beside the square of the parameters an allocation is nothing.
-            let mut whole = vec![0.0; layout.parameters];
-            self.write_column(layout, factor, free[c], &mut whole);
-            for (to, &row) in column.iter_mut().zip(free).skip(c) {
-                *to = whole[row];
+            match &layout.free {
+                None => self.write_column(layout, factor, c, column),
+                Some(free) => {
+                    // Beside the square of the parameters an allocation is nothing.
+                    let mut whole = vec![0.0; layout.parameters];
+                    self.write_column(layout, factor, free[c], &mut whole);
+                    for (to, &row) in column.iter_mut().zip(free).skip(c) {
+                        *to = whole[row];
+                    }
+                }
             }
             column[c] += damping;
         });

@@ -85,6 +85,13 @@ impl Panels {
     }
 }
 
+/// Samples to add, and where a network's parameters are.
+#[derive(Clone, Copy)]
+pub struct Samples<'a> {
+    pub layout: &'a Layout,
+    pub blocks: &'a [BlockWork],
+}
+
 impl Tile<'_> {
     /// Number of entries.
     pub fn cost(&self) -> usize {
@@ -95,8 +102,7 @@ impl Tile<'_> {
     pub fn add(
         mut self,
         plan: &Plan,
-        layout: &Layout,
-        blocks: &[BlockWork],
+        Samples { layout, blocks }: Samples<'_>,
         panels: &mut Panels,
         vectors: Vectors,
     ) {

@@ -14,25 +14,25 @@ use std::vec::Vec;
 use super::{Design, DesignError};
 use crate::feedback::{OWN, OWN_RATE};
 use crate::model::DriveModel;
-use crate::passage::{DriveFilter, Passage};
+use crate::signal_path::{DriveFilter, SignalPath};
 
 /// Most control periods between two executions of the position controller: the loop's response
 /// is a matrix of as many rows.
 const MOST_EVERY: u32 = 32;
 
 /// Refuses loops that no margins are computed of.
-pub(super) fn check(passage: &Passage) -> Result<(), DesignError> {
+pub(super) fn check(signal_path: &SignalPath) -> Result<(), DesignError> {
     let refused = [
         (
-            passage.speed_every > 1,
+            signal_path.speed_every > 1,
             "its speed controller runs at a lower rate than the control (speed_rate), so that a correction of the command waits for it",
         ),
         (
-            passage.position_every > MOST_EVERY,
+            signal_path.position_every > MOST_EVERY,
             "its position controller runs less than once in 32 control periods (position_rate), for which no margins are computed",
         ),
         (
-            passage.other_position,
+            signal_path.other_position,
             "its position controller uses another position than the measured one (feedback = \"blend\", or \"motor\" beside a sensor at the load)",
         ),
     ];
@@ -98,7 +98,7 @@ pub(super) fn phases(model: &DriveModel, design: &Design) -> Vec<Commanding> {
         places,
         kept: one,
     };
-    let every = model.cascade.passage.position_every.max(1);
+    let every = model.cascade.signal_path.position_every.max(1);
     let mut all: Vec<Commanding> = (0..every)
         .map(|phase| {
             let mut law = Commanding {
@@ -162,7 +162,7 @@ impl Cycle<'_> {
     fn run(&self, executed: bool, x: &mut DVector<f64>, y: &DVector<f64>) -> f64 {
         let (m, p) = (&self.design.linear, &self.places);
         let n = m.size();
-        let (drive, passage) = (&self.model.cascade, &self.model.cascade.passage);
+        let (drive, signal_path) = (&self.model.cascade, &self.model.cascade.signal_path);
         let k = self.design.k.transpose();
 
         // As `Feedback::predict` and `Feedback::correct`, what is left of a drive's command
@@ -179,27 +179,27 @@ impl Cycle<'_> {
         // The drive. The offset of the position has it ask for the speed that was measured.
         let (position, speed) = (y[0], y[1]);
         let mut set_point = speed;
-        if passage.position_every > 1 {
+        if signal_path.position_every > 1 {
             if executed {
                 x[p.set_point] = speed;
             }
             set_point = x[p.set_point];
         }
         let mut seen = speed;
-        if passage.speed_of_position {
+        if signal_path.speed_of_position {
             let [one, two] = p.positions;
             let over = 2.0 * self.model.period * self.model.travel;
             seen = (position - x[two]) / over;
             (x[two], x[one]) = (x[one], position);
         }
-        seen = filtered(passage.speed.as_ref(), p.filters[0], x, seen);
+        seen = filtered(signal_path.speed.as_ref(), p.filters[0], x, seen);
         let error = (set_point - seen) / self.model.effort_limit;
         x[p.held] += drive.speed_integral * self.model.period * error;
         let mut command = asked + (drive.speed * error + x[p.held]);
-        for (filter, at) in passage.command.iter().zip(&p.filters[1..]) {
+        for (filter, at) in signal_path.command.iter().zip(&p.filters[1..]) {
             command = filtered(filter.as_ref(), *at, x, command);
         }
-        x[p.besides] = match passage.command == [None, None] {
+        x[p.besides] = match signal_path.command == [None, None] {
             true => drive.speed * error + x[p.held],
             false => command - asked,
         };

@@ -95,7 +95,7 @@ impl SampledDrive {
         let into = hold_voltages(&mut a, &flow, &places, model.drive.late());
         let acts = control_current(&mut a, into, &places, model);
         let b = hold_commands(&mut a, &acts, &places, model.delay / model.period);
-        places.shown(a, b, units, model, modes)
+        places.shown((a, b), units, model, modes)
     }
 
     /// Number of states.
@@ -193,8 +193,7 @@ impl Places {
     /// The drive of A and B with what is measured and weighed of its states.
     fn shown(
         &self,
-        mut a: DMatrix<f64>,
-        b: DVector<f64>,
+        (mut a, b): (DMatrix<f64>, DVector<f64>),
         units: DVector<f64>,
         model: &DriveModel,
         modes: &[Mode],

@@ -19,7 +19,7 @@ pub struct Variation<'a> {
     pub mass: f64,
     /// Its bristles' stiffness and damping and its viscous friction, as shares.
     pub friction: f64,
-    /// Its χ as a share of the one that the feedback goes by, at most 1 in all.
+    /// Its χ (share of the bristles that stick) as a multiple of the design's, at most 1 in all.
     pub sticking: f64,
     /// Share of the least damping of slow sliding, which is negative; 1 where the load slides
     /// at about half the Stribeck speed and more, 0 if it slides fast.

@@ -209,7 +209,7 @@ impl FeedbackDesign {
         if c.speed <= 0.0 {
             return Err(DesignError::Control("its speed controller has no gain"));
         }
-        drive_loops::check(&c.passage)?;
+        drive_loops::check(&c.signal_path)?;
         let modes = settings.used(modes)?;
         let stribeck = stribeck_damping(model, &modes);
         let mut designed = Self {

@@ -2,8 +2,8 @@
 
 use axis_log::Log;
 use axis_pipeline::identification::{IdentificationPlan, identify as identify_on};
+use axis_sim::NoiseLevels;
 use axis_sim::{Axis, LoadSensor, Measured};
-use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result, WrapErr};
 
 use super::friction::Friction;
@@ -42,10 +42,10 @@ pub(super) fn identify(context: &Context, stage: &Stage<'_>) -> Result<Friction>
 /// What noise the drive's sensors have beside what the axis file says of them: of a good scale,
 /// motor encoder and current sensor where it says nothing.
 fn sensors(machine: &Axis, seed: u64) -> impl FnMut(&mut Measured) {
-    let good = Noise::good(machine);
+    let good = NoiseLevels::good(machine);
     let has_scale = matches!(machine.sensors.load, LoadSensor::Perfect);
     let has_encoder = machine.sensors.motor.is_none();
-    let noise = Noise {
+    let noise = NoiseLevels {
         position: if has_scale { good.position } else { 0.0 },
         angle: if has_encoder { good.angle } else { 0.0 },
         speed: if has_encoder { good.speed } else { 0.0 },

@@ -59,8 +59,8 @@ impl File {
         if let Some(tables) = item.as_array_of_tables() {
             for (i, table) in tables.iter().enumerate() {
                 // Those that name no kind are all alike.
-                let is_told = i == 0 || table.contains_key("kind");
-                self.table(&format!("[[{path}]]"), path, table, keys, is_told);
+                let is_new = i == 0 || table.contains_key("kind");
+                self.table(&format!("[[{path}]]"), path, table, is_new.then_some(keys));
             }
         }
         let Some(table) = item.as_table() else {
@@ -68,7 +68,7 @@ impl File {
         };
         let is_parent = table.iter().all(|(_, item)| item.is_table());
         if !is_parent {
-            return self.table(&format!("[{path}]"), path, table, keys, true);
+            return self.table(&format!("[{path}]"), path, table, Some(keys));
         }
         for (name, item) in table.iter() {
             let inner = keys.iter().find(|key| key.name() == name);
@@ -84,7 +84,8 @@ impl File {
         }
     }
 
-    fn table(&mut self, head: &str, path: &str, table: &Table, keys: &[Key], is_told: bool) {
+    /// A table; without `keys` nothing is said of what is valid.
+    fn table(&mut self, head: &str, path: &str, table: &Table, keys: Option<&[Key]>) {
         let kind = table.get("kind").and_then(Item::as_str).unwrap_or("");
         let kinds = self.kinds(path);
         let kind = kinds.iter().find(|(name, ..)| *name == kind);
@@ -93,13 +94,13 @@ impl File {
             self.text += &format!("# {summary}\n");
         }
         self.text += &format!("{head}\n");
-        let mut all = keys.to_vec();
-        if let Some((_, _, of_kind)) = kind {
+        let mut all = keys.unwrap_or_default().to_vec();
+        if let (Some(keys), Some((_, _, of_kind))) = (keys, kind) {
             let is_new = |key: &&Key| !keys.iter().any(|k| k.name() == key.name());
             all.extend(of_kind.iter().filter(is_new).cloned());
         }
         let entries: Vec<_> = table.iter().collect();
-        self.lines(&entries, if is_told { &all } else { &[] }, path);
+        self.lines(&entries, &all, path);
     }
 
     /// Entries, each with what is valid, and the keys that were left out.

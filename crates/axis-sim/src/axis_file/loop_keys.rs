@@ -1,17 +1,9 @@
-//! Keys that say which others a file may have.
+//! Keys of the loop, whatever its controller.
 
 use crate::freedom::Freedom;
 use crate::part::units::*;
-use crate::part::{Key, count, quantity, word};
+use crate::part::{Key, quantity, word};
 use crate::work::FREQUENCIES;
-
-/// Kinds of the first schema.
-pub(super) const SHORT_KINDS: [&str; 2] = ["ball-screw", "rigid-mass"];
-
-/// What tells which keys a file may have.
-pub(super) fn first_keys() -> Vec<Key> {
-    vec![word("kind", &SHORT_KINDS), count("schema", 1, 2)]
-}
 
 /// Keys of the table [control] that are not the controller's.
 pub(super) fn loop_keys(freedom: Freedom) -> Vec<Key> {

@@ -26,7 +26,7 @@ impl<T: Scalar> DriveFilter<T> {
 /// Rates and filters of a drive's own loops. None by default: each loop runs once in a control
 /// period, and reads what the correction was made from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Passage<T = f64> {
+pub struct SignalPath<T = f64> {
     /// Control periods from one execution of the position controller to the next.
     pub position_every: u32,
     /// The same of the speed controller, with its filters.
@@ -46,7 +46,7 @@ pub struct Passage<T = f64> {
     pub blend: Option<DriveFilter<T>>,
 }
 
-impl<T> Default for Passage<T> {
+impl<T> Default for SignalPath<T> {
     fn default() -> Self {
         Self {
             position_every: 1,
@@ -60,16 +60,16 @@ impl<T> Default for Passage<T> {
     }
 }
 
-impl<T: Scalar> Passage<T> {
+impl<T: Scalar> SignalPath<T> {
     /// Each value rounded to the nearest number of another scalar.
     #[must_use]
-    pub fn cast<U: Scalar>(&self) -> Passage<U> {
+    pub fn cast<U: Scalar>(&self) -> SignalPath<U> {
         let to = |value: T| U::of(value.to_f64());
         let filter = |f: DriveFilter<T>| DriveFilter {
             b: f.b.map(to),
             a: f.a.map(to),
         };
-        Passage {
+        SignalPath {
             position_every: self.position_every,
             speed_every: self.speed_every,
             speed: self.speed.map(filter),

@@ -1,14 +1,15 @@
-//! Noise of the sensors, as it is.
+//! Noise of the sensors of an axis, for runs that stand for a machine.
 
-use axis_sim::mechanism::Freedom;
-use axis_sim::{Axis, Measured};
-use discrepancy::SensorNoise;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha20Rng;
 
+use crate::axis::Axis;
+use crate::cycle::Measured;
+use crate::freedom::Freedom;
+
 /// Standard deviations of sensor noise, white at the control rate.
 #[derive(Clone, Copy, Debug)]
-pub struct Noise {
+pub struct NoiseLevels {
     /// Position of the load, m or rad.
     pub position: f64,
     /// Motor angle, rad.
@@ -19,7 +20,7 @@ pub struct Noise {
     pub current: f64,
 }
 
-impl Noise {
+impl NoiseLevels {
     /// A good linear scale, a motor encoder with sine interpolation and a
     /// current sensor of 15 A range.
     pub const GOOD: Self = Self {
@@ -29,7 +30,7 @@ impl Noise {
         current: 5e-3,
     };
 
-    /// As good ones for an axis: on the paper's, [`Noise::GOOD`].
+    /// As good ones for an axis: on one of 15 A along a line, [`NoiseLevels::GOOD`].
     pub fn good(axis: &Axis) -> Self {
         let current = axis.actuator.limit() / 15.0;
         // A resolver's noise at a motor's shaft; of a motor that is the load, that of the
@@ -60,11 +61,11 @@ impl Noise {
         }
     }
 
-    /// Sensors with this noise, for [`axis_sim::ClosedLoop::run_sensed`]: the same seed
+    /// Sensors with this noise, for [`ClosedLoop::run_sensed`](crate::ClosedLoop::run_sensed): the same seed
     /// gives the same noise.
     pub fn sensors(self, seed: u64) -> impl FnMut(&mut Measured) {
-        let mut normal = Normal::new(seed);
-        let mut next = move |deviation: f64| deviation * normal.next();
+        let mut normal = NormalNumbers::new(seed);
+        let mut next = move |deviation: f64| deviation * normal.draw();
         move |seen: &mut Measured| {
             seen.position += next(self.position);
             seen.motor_angle += next(self.angle);
@@ -75,39 +76,30 @@ impl Noise {
     }
 }
 
-/// What the search would suppose of these sensors, had it been told.
-impl From<Noise> for SensorNoise {
-    fn from(noise: Noise) -> Self {
-        Self {
-            position: noise.position,
-            angle: noise.angle,
-            speed: noise.speed,
-            current: noise.current,
-        }
-    }
-}
-
 /// Normal numbers of mean 0 and variance 1, two of two uniform ones: √(−2 ln u) cos 2πv
 /// and √(−2 ln u) sin 2πv (G. E. P. Box and M. E. Muller, Ann. Math. Statist. 29 (1958)
 /// 610–611, doi:10.1214/aoms/1177706645).
 ///
-/// The search draws its noise from another generator by another transformation: with the
-/// same, a seed in common would give it the noise itself.
-pub(super) struct Normal {
+/// The search (`discrepancy`) draws its noise from another generator by another transformation:
+/// with the same, a seed in common would give it the noise itself.
+#[derive(Clone, Debug)]
+pub struct NormalNumbers {
     random: ChaCha20Rng,
     /// The second of a pair.
     spare: Option<f64>,
 }
 
-impl Normal {
-    pub(super) fn new(seed: u64) -> Self {
+impl NormalNumbers {
+    /// Those of a seed.
+    pub fn new(seed: u64) -> Self {
         Self {
             random: ChaCha20Rng::seed_from_u64(seed),
             spare: None,
         }
     }
 
-    pub(super) fn next(&mut self) -> f64 {
+    /// The next number.
+    pub fn draw(&mut self) -> f64 {
         if let Some(spare) = self.spare.take() {
             return spare;
         }
@@ -123,18 +115,15 @@ impl Normal {
 
 #[cfg(test)]
 mod tests {
-    use axis_sim::{Axis, Measured};
-    use discrepancy::SensorNoise;
-
-    use super::{Noise, Normal};
+    use super::*;
 
     /// Raw moments of the normal distribution are 0, 1, 0 and 3; the means of n powers
     /// of its numbers have the variances 1, 2, 15 and 96, over n.
     #[test]
     fn numbers_have_the_moments_of_the_normal_distribution() {
         let n = 400_000;
-        let mut normal = Normal::new(3);
-        let all: Vec<f64> = (0..n).map(|_| normal.next()).collect();
+        let mut normal = NormalNumbers::new(3);
+        let all: Vec<f64> = (0..n).map(|_| normal.draw()).collect();
         let moment = |k: i32| all.iter().map(|z| z.powi(k)).sum::<f64>() / f64::from(n);
         let scatter = |variance: f64| 4.0 * (variance / f64::from(n)).sqrt();
         assert!(moment(1).abs() < scatter(1.0), "{}", moment(1));
@@ -170,7 +159,7 @@ mod tests {
         (0..n).flat_map(one).collect()
     }
 
-    const UNIT: Noise = Noise {
+    const UNIT: NoiseLevels = NoiseLevels {
         position: 1.0,
         angle: 1.0,
         speed: 1.0,
@@ -184,26 +173,10 @@ mod tests {
         assert_ne!(of(8), of(9));
     }
 
-    /// Truth and model agree on how large noise is, and on no number of it.
-    #[test]
-    fn the_search_does_not_know_the_noise_of_a_seed() {
-        let (seed, n) = (8, 40_000);
-        let truth = drawn(UNIT.sensors(seed), n);
-        let model = drawn(SensorNoise::from(UNIT).sensors(seed), n);
-        let power = |all: &[f64]| all.iter().map(|z| z * z).sum::<f64>() / all.len() as f64;
-        let scatter = 4.0 / (truth.len() as f64).sqrt();
-        assert!((power(&truth) / power(&model) - 1.0).abs() < 2.0 * scatter);
-        for lag in 0..8 {
-            let pairs = truth.iter().zip(&model[lag..]).map(|(a, b)| a * b);
-            let along = pairs.sum::<f64>() / truth.len() as f64;
-            assert!(along.abs() < scatter, "{lag}: {along}");
-        }
-    }
-
     #[test]
     fn sensors_are_scaled_one_by_one() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/liu2025.toml");
-        let good = Noise::good(&Axis::read(file.as_ref()).unwrap());
+        let good = NoiseLevels::good(&Axis::read(file.as_ref()).unwrap());
         let unit = drawn(UNIT.sensors(4), 1);
         let twice = drawn(good.scaled(2.0).sensors(4), 1);
         let by = [
