@@ -135,6 +135,7 @@ fn logged(
                     let power = (machine.friction_heat - spent) / FIVE_MINUTES;
                     power * (1.0 + noise * random.normal())
                 }),
+                temperatures: Vec::new(),
             });
             truth.push(PLACES.map(|x| machine.growth(cold, x)));
         }

@@ -28,6 +28,8 @@ pub(super) struct Readings {
 pub(super) struct Reference<'a> {
     pub position: &'a [f64],
     pub velocity: &'a [f64],
+    /// Rows at constant speed.
+    pub constant: &'a [bool],
 }
 
 /// Of a log that names duties: each row is an end, and a reading if nothing says otherwise.
@@ -206,6 +208,40 @@ impl Line {
     }
 }
 
+/// Rows of a reference at constant speed: it is that of the rows beside.
+pub(super) fn constant(velocity: &[f64]) -> Vec<bool> {
+    let v = velocity;
+    let is_constant = |k: usize| {
+        let beside = [k.saturating_sub(1), (k + 1).min(v.len() - 1)];
+        let change = beside.map(|other| (v[other] - v[k]).abs());
+        v[k] != 0.0 && change[0].max(change[1]) <= CONSTANT * v[k].abs()
+    };
+    (0..v.len()).map(is_constant).collect()
+}
+
+/// Width of a class of speeds, as a share, and the share of the rows from which a class is a constant speed: while it
+/// accelerates an axis passes through hundreds of classes in a small part of the time.
+const CLASS: f64 = 0.005;
+const RECURS: f64 = 0.01;
+
+/// The same of a reference that is not seen between its rows: a speed that recurs is a constant one.
+pub(super) fn recurring(velocity: &[f64]) -> Vec<bool> {
+    let class = |v: &f64| (v.abs().ln() / CLASS).round() as i64;
+    let mut classes: Vec<i64> = velocity
+        .iter()
+        .filter(|v| **v != 0.0)
+        .map(class)
+        .collect();
+    classes.sort_unstable();
+    let least = (RECURS * classes.len() as f64).max(FEWEST);
+    let recurs = |v: &f64| {
+        let of = class(v);
+        let count = classes.partition_point(|c| *c <= of) - classes.partition_point(|c| *c < of);
+        *v != 0.0 && count as f64 >= least
+    };
+    velocity.iter().map(recurs).collect()
+}
+
 /// Growth about the time of a row, the mean of both directions at each place.
 fn by_directions(
     time: &[f64],
@@ -222,11 +258,10 @@ fn by_directions(
     };
     let mut lines = vec![[Line::default(); 2]; places.len()];
     for k in rows {
-        let v = reference.velocity;
-        let change = (v[k + 1] - v[k]).abs().max((v[k] - v[k - 1]).abs());
-        if v[k] == 0.0 || change > CONSTANT * v[k].abs() {
+        if !reference.constant[k] {
             continue;
         }
+        let v = reference.velocity;
         for (place, both) in places.iter().zip(&mut lines) {
             let beside = reference.position[k] - place;
             if beside.abs() <= half {

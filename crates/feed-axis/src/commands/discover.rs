@@ -15,9 +15,11 @@ use miette::{IntoDiagnostic, Report, Result, WrapErr, miette};
 use toml_edit::{DocumentMut, Item, Value};
 
 use super::discover_files::{AXIS, DISCOVERY, NEXT, REPORT};
+use super::discover_slow;
 use super::discover_words::{Files, Found, FoundInSummary, summary_words};
 use super::motions::listed;
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
+use crate::exit::wrong_use;
 use crate::file_set::FileSet;
 use crate::output::{Worded, note, print, ready};
 use crate::page::discovery as discovery_page;
@@ -32,11 +34,13 @@ pub struct Options {
     #[arg(long, value_name = "FILE", default_value = DEFAULT_AXIS)]
     axis: PathBuf,
     /// Logs to fit to: tables of text (CSV and the like), Parquet, MAT v5, or recordings of other
-    /// programs, 100 Hz to 20 kHz; a log in several files as their paths with + between
+    /// programs, 100 Hz to 20 kHz; a log in several files as their paths with + between. Or logs of
+    /// hours, slower than 10 Hz: growth and friction that falls with warmth are looked for in them
     #[arg(long, value_name = "LOG", num_args = 1.., required_unless_present = "summary")]
     fit: Vec<PathBuf>,
-    /// Logs of other motion, to check on; never fitted to
-    #[arg(long, value_name = "LOG", num_args = 1.., required_unless_present = "summary")]
+    /// Logs of other motion, to check on; never fitted to. Logs of hours may be without: then the last
+    /// quarter of each is held out
+    #[arg(long, value_name = "LOG", num_args = 1..)]
     check: Vec<PathBuf>,
     /// Logs for the reported figures, used for no choice. Without them the figures come from the
     /// last check log, or from the last part of a single one if it can be cut
@@ -64,6 +68,8 @@ pub struct Options {
     /// Threads, 0 for all cores; results do not depend on it
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
+    #[command(flatten)]
+    slow: discover_slow::Options,
 }
 
 /// Runs the command.
@@ -79,6 +85,22 @@ pub fn command(options: &Options) -> Result<()> {
     let out = options.out.clone().unwrap_or_else(default);
     match &options.summary {
         Some(table) => from_summary(options, &machine, table, &out),
+        None if discover_slow::asked(&machine, &options.fit) => {
+            let given = discover_slow::Given {
+                machine: &machine,
+                file: &options.axis,
+                fit: &options.fit,
+                check: &options.check,
+                others: [
+                    ("--test", !options.test.is_empty()),
+                    ("--accept", !options.accept.is_empty()),
+                    ("--reject", !options.reject.is_empty()),
+                    ("--balance", options.balance),
+                ],
+                out: &out,
+            };
+            discover_slow::command(&given, &options.slow)
+        }
         None => from_logs(options, &machine, &out),
     }
 }
@@ -90,6 +112,11 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
         ..Settings::default()
     };
     settings.check(machine).into_diagnostic()?;
+    if options.check.is_empty() {
+        return Err(wrong_use(
+            "--check is missing; valid: one log or more of other motion than that of --fit, on which the search is judged",
+        ));
+    }
     let mut notes = Vec::new();
     let mut logs = |paths: &[PathBuf]| read_all(paths, machine, &mut notes);
     let (fit, check) = (logs(&options.fit)?, logs(&options.check)?);

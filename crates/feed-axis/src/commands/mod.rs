@@ -19,6 +19,8 @@ pub mod contour_route;
 pub mod control_table;
 pub mod discover;
 mod discover_files;
+mod discover_heat;
+mod discover_slow;
 mod discover_words;
 mod excitation;
 pub mod export;
