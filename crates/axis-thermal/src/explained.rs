@@ -119,6 +119,12 @@ const MATERIAL: f64 = 0.5;
 /// 95 % of a normal distribution lie within so many standard deviations.
 const WITHIN: f64 = 1.96;
 
+/// The same of Student's t with so many degrees of freedom, to the first order of their inverse (Abramowitz and Stegun,
+/// 26.7.5): z + (z³ + z)/(4 ν).
+fn within(freedom: f64) -> f64 {
+    WITHIN + (WITHIN.powi(3) + WITHIN) / (4.0 * freedom)
+}
+
 /// Sums of squares of growth and of friction's power: of what is fitted, of what is not.
 fn squares(logs: &[HeldLog], fitted: &Fitted, deviations: Deviations) -> [[f64; 2]; 2] {
     let usual = usual_duration(&fitted.followed);
@@ -271,8 +277,8 @@ fn judged(
     }
 }
 
-fn interval(value: f64, deviation: f64) -> Estimated {
-    let half = WITHIN * deviation;
+fn interval(value: f64, deviation: f64, freedom: f64) -> Estimated {
+    let half = within(freedom) * deviation;
     Estimated {
         value,
         interval: [value - half, value + half],
@@ -281,18 +287,18 @@ fn interval(value: f64, deviation: f64) -> Estimated {
 
 fn growth(problem: &Problem<'_>, fits: &Fits) -> Result<HeatEffect, ThermalError> {
     let logs = problem.logs;
-    let (covariance, _) = problem.covariance(BOTH, &fits.both, fits.deviations)?;
+    let (covariance, determined) = problem.covariance(BOTH, &fits.both, fits.deviations)?;
+    let freedom = problem.freedom(determined)[0];
     let all = fits.both.followed.iter().enumerate();
     let all = all.flat_map(|(l, log)| log.growth.iter().enumerate().map(move |(i, r)| (l, i, r)));
     let greatest = all.max_by(|a, b| a.2.found.abs().total_cmp(&b.2.found.abs()));
     let Some((l, i, read)) = greatest else {
         return Err(ThermalError::NoDuration);
     };
-    let of = |at: &DVector<f64>, followed: &[FollowedLog]| {
-        at[GROWTH] * followed[l].growth[i].predicted
-    };
+    let of =
+        |at: &DVector<f64>, followed: &[FollowedLog]| at[GROWTH] * followed[l].growth[i].predicted;
     let spread = problem.spread(&fits.both, &covariance, of)?;
-    let size = interval(fits.both.size() * read.predicted, spread);
+    let size = interval(fits.both.size() * read.predicted, spread, freedom);
     let mut sums = [0.0; 2];
     for (held, followed) in logs.iter().zip(&fits.both.followed) {
         for r in &followed.growth {
@@ -315,7 +321,8 @@ fn cold(problem: &Problem<'_>, log: usize, read: &FollowedFriction, levels: [f64
 
 fn warming(problem: &Problem<'_>, fits: &Fits) -> Result<HeatEffect, ThermalError> {
     let both = &fits.both;
-    let (covariance, _) = problem.covariance(BOTH, both, fits.deviations)?;
+    let (covariance, determined) = problem.covariance(BOTH, both, fits.deviations)?;
+    let freedom = problem.freedom(determined)[1];
     let lost = |log: usize, read: &FollowedFriction, levels: [f64; 2]| {
         1.0 - read.predicted / cold(problem, log, read, levels)
     };
@@ -334,30 +341,26 @@ fn warming(problem: &Problem<'_>, fits: &Fits) -> Result<HeatEffect, ThermalErro
         lost(l, &followed[l].friction[i], levels)
     };
     let value = of(&both.at, &both.followed);
-    let size = interval(value, problem.spread(both, &covariance, of)?);
+    let spread = problem.spread(both, &covariance, of)?;
+    let size = interval(value, spread, freedom);
     let rivals = rival_drift::of_friction(problem.logs, both, fits.deviations);
     let time: f64 = problem.logs[l].log.stretches[..=read.stretch]
         .iter()
         .map(|stretch| stretch.duration)
         .sum();
     // A fall of one part of the friction, with its level left free: five standard deviations of its size.
-    let limit = 5.0 * (size.interval[1] - value) / WITHIN;
-    Ok(judged(
-        problem,
-        fits,
-        1,
-        rivals,
-        (size, [time, 0.0], limit),
-    ))
+    let limit = 5.0 * spread;
+    Ok(judged(problem, fits, 1, rivals, (size, [time, 0.0], limit)))
 }
 
 fn falls(problem: &Problem<'_>, fits: &Fits) -> Result<[Estimated; 3], ThermalError> {
-    let (covariance, _) = problem.covariance(BOTH, &fits.both, fits.deviations)?;
+    let (covariance, determined) = problem.covariance(BOTH, &fits.both, fits.deviations)?;
+    let freedom = problem.freedom(determined)[1];
     let values = fits.both.falls();
     Ok([0, 1, 2].map(|i| {
         let k = FALLS + i;
         let deviation = covariance[(k, k)].max(0.0).sqrt();
-        interval(values[i], PER_KELVIN[i] * deviation)
+        interval(values[i], PER_KELVIN[i] * deviation, freedom)
     }))
 }
 
@@ -389,7 +392,11 @@ fn gaps_between(
         if kind == 0 {
             for (a, b) in a.growth.iter().zip(&b.growth) {
                 let error = |fit: &Fitted, r: &FollowedGrowth| fit.size() * r.predicted - r.found;
-                add(part(a.stretch), [error(before, a), error(after, b)], a.found);
+                add(
+                    part(a.stretch),
+                    [error(before, a), error(after, b)],
+                    a.found,
+                );
             }
         } else {
             for (a, b) in a.powers().zip(b.powers()) {

@@ -219,7 +219,12 @@ impl GrowthLog {
             let duration = [("duration", stretch.duration)];
             let bodies = stretch.temperatures.iter();
             let bodies = bodies.map(|(_, found)| ("temperature of a body", *found));
-            for (channel, value) in read.chain(air).chain(friction).chain(duration).chain(bodies) {
+            for (channel, value) in read
+                .chain(air)
+                .chain(friction)
+                .chain(duration)
+                .chain(bodies)
+            {
                 if !value.is_finite() {
                     return Err(ThermalError::Log {
                         stretch: number + 1,

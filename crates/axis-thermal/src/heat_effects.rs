@@ -9,8 +9,8 @@
 //! ```
 //!
 //! is least over all θ but those that the assumption sets to 0 (growth: g; warming: c_v, c_d, p). σ and ρ are those
-//! that the residual shows with both effects there: its RMS, increased by √(n/(n − p)) for the p unknowns that the log
-//! determines, and by √((1 + r)/(1 − r)) for its correlation r from reading to reading, as a machine whose laws are
+//! that the residual shows with both effects there: its RMS, increased by √(n/(n − p)) for the p unknowns that its n readings
+//! determine, and by √((1 + r)/(1 − r)) for its correlation r from reading to reading, as a machine whose laws are
 //! others than the network's leaves a slow residual.
 //!
 //! An effect is named if without it D is greater by 25 or more on what is fitted and by 9 or more on what is not (five
@@ -78,8 +78,8 @@ fn prior(unknown: usize) -> f64 {
 const FARTHEST: f64 = 2.5;
 /// By which a temperature in the log and that of its body differ, K.
 const TEMPERATURE: f64 = 0.5;
-/// Most steps of a fit.
-const ITERATIONS: u32 = 30;
+/// Most steps of a fit, and the part of D that a step is not worth taking for: evidence decides by 9 and more.
+const STEPS: (u32, f64) = (30, 0.1);
 
 /// Which of the two effects may act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -173,7 +173,10 @@ impl Problem<'_> {
                 | TemperatureLaw::Linear { per_kelvin } => *per_kelvin,
             });
             let [viscous, dry] = per_kelvin;
-            for (i, fall) in [viscous, dry, laws.preload_per_kelvin].into_iter().enumerate() {
+            for (i, fall) in [viscous, dry, laws.preload_per_kelvin]
+                .into_iter()
+                .enumerate()
+            {
                 at[FALLS + i] = fall / PER_KELVIN[i];
             }
         }
@@ -257,7 +260,7 @@ impl Problem<'_> {
         let begin = self.begin(assumed);
         let from = from.map_or(&begin, |fitted| &fitted.at);
         let start = DVector::from_iterator(free.len(), free.iter().map(|k| from[*k]));
-        let found = least(start, ITERATIONS, self.of_free(&free, &begin, deviations))?;
+        let found = least(start, STEPS, self.of_free(&free, &begin, deviations))?;
         let at = with(&begin, &free, &found.at);
         Ok(Fitted {
             followed: self.followed(&at, |held| held.log.stretches.len())?,
@@ -266,13 +269,14 @@ impl Problem<'_> {
         })
     }
 
-    /// Covariance of all unknowns (0 of those that are not free), and how many of them the readings determine.
+    /// Covariance of all unknowns (0 of those that are not free), and how many of them readings of growth and of the
+    /// friction's power determine.
     pub(crate) fn covariance(
         &self,
         assumed: Assumed,
         fitted: &Fitted,
         deviations: Deviations,
-    ) -> Result<(DMatrix<f64>, f64), ThermalError> {
+    ) -> Result<(DMatrix<f64>, [f64; 2]), ThermalError> {
         let free = self.free(assumed);
         let begin = self.begin(assumed);
         let of = self.of_free(&free, &begin, deviations);
@@ -287,9 +291,25 @@ impl Problem<'_> {
                 whole[(*k, *l)] = small[(i, j)];
             }
         }
-        let known = |k: &usize| 1.0 - whole[(*k, *k)] / prior(*k).powi(2);
-        let determined = free.iter().map(known).sum();
-        Ok((whole, determined))
+        // The trace of what maps readings to fitted readings.
+        let part = |from: usize, count: usize| {
+            let rows = slopes.rows(from, count);
+            (rows * &small).component_mul(&rows).sum()
+        };
+        let [growth, powers] = self.counts();
+        Ok((whole, [part(0, growth), part(growth, powers)]))
+    }
+
+    /// Readings of growth and of the friction's power that are fitted.
+    pub(crate) fn counts(&self) -> [usize; 2] {
+        let mut counts = [0; 2];
+        for held in self.logs {
+            let part = held.log.first(held.fitted);
+            counts[0] += part.comparisons();
+            let powers = part.stretches.iter().filter_map(|s| s.friction);
+            counts[1] += powers.filter(|power| *power > 0.0).count();
+        }
+        counts
     }
 
     /// Standard deviation of what `of` makes of the unknowns.
@@ -314,7 +334,7 @@ impl Problem<'_> {
     }
 
     /// σ and ρ as the residual of a fit shows them.
-    pub(crate) fn noise(&self, fitted: &Fitted, determined: f64) -> [ResidualNoise; 2] {
+    pub(crate) fn noise(&self, fitted: &Fitted, determined: [f64; 2]) -> [ResidualNoise; 2] {
         let size = fitted.size();
         let usual = usual_duration(&fitted.followed);
         let (mut growth, mut friction) = (Vec::new(), Vec::new());
@@ -326,19 +346,28 @@ impl Problem<'_> {
             places.dedup();
             growth.extend(places.iter().map(|place| {
                 let here = read.iter().filter(|r| r.place == *place);
-                here.map(|r| size * r.predicted - r.found).collect::<Vec<_>>()
+                here.map(|r| size * r.predicted - r.found)
+                    .collect::<Vec<_>>()
             }));
             let powers = followed.powers().filter(|r| r.stretch < held.fitted);
             friction.push(powers.map(|r| r.deviation(usual)).collect());
         }
-        let count = |all: &[Vec<f64>]| all.iter().map(Vec::len).sum::<usize>() as f64;
-        let all = count(&growth) + count(&friction);
-        // A log that determines all of its readings has no residual to judge by.
-        let increase = (all / (all - determined).max(0.25 * all)).sqrt();
+        let left = self.freedom(determined);
+        let counts = self.counts().map(|count| count as f64);
+        let increase = [0, 1].map(|i| (counts[i].max(1.0) / left[i]).sqrt());
         [
-            residual_noise(&growth, increase, 0.02e-6),
-            residual_noise(&friction, increase, 1e-4),
+            residual_noise(&growth, increase[0], 0.02e-6),
+            residual_noise(&friction, increase[1], 1e-4),
         ]
+    }
+}
+
+impl Problem<'_> {
+    /// Degrees of freedom of both kinds of residuals. Readings that are all determined leave none to judge by: a quarter
+    /// is kept.
+    pub(crate) fn freedom(&self, determined: [f64; 2]) -> [f64; 2] {
+        let counts = self.counts().map(|count| (count as f64).max(1.0));
+        [0, 1].map(|i| (counts[i] - determined[i]).max(0.25 * counts[i]))
     }
 }
 

@@ -160,7 +160,7 @@ impl Problem<'_> {
 
     fn solve(&self) -> Result<DVector<f64>, ThermalError> {
         let cold = DVector::zeros(self.unknowns.len());
-        let least = least(cold, self.how.iterations, |at| self.residuals(at))?;
+        let least = least(cold, (self.how.iterations, 0.0), |at| self.residuals(at))?;
         Ok(least.at)
     }
 }

@@ -18,10 +18,10 @@ pub(crate) struct Least {
     pub residuals: DVector<f64>,
 }
 
-/// The least sum of squares from `at` on, in so many steps at most.
+/// The least sum of squares from `at` on, in so many steps at most, until a step takes no more than `enough` of it.
 pub(crate) fn least(
     mut at: DVector<f64>,
-    iterations: u32,
+    (iterations, enough): (u32, f64),
     of: impl Fn(&DVector<f64>) -> Result<DVector<f64>, ThermalError>,
 ) -> Result<Least, ThermalError> {
     let mut residuals = of(&at)?;
@@ -53,8 +53,9 @@ pub(crate) fn least(
         };
         damping = (0.25 * damping).max(1e-6);
         let change = (&next - &at).amax();
+        let taken = residuals.norm_squared() - there.norm_squared();
         (at, residuals) = (next, there);
-        if change < ENDED {
+        if change < ENDED || taken < enough {
             break;
         }
     }

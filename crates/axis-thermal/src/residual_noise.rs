@@ -51,10 +51,14 @@ mod tests {
     /// Noise that alternates has no correlation that counts; a slow residual beside it is not white.
     #[test]
     fn a_slow_residual_counts_more_than_noise() {
-        let noise: Vec<f64> = (0..40).map(|k| if k % 3 == 0 { 1.0 } else { -0.5 }).collect();
+        let noise: Vec<f64> = (0..40)
+            .map(|k| if k % 3 == 0 { 1.0 } else { -0.5 })
+            .collect();
         let alone = residual_noise(std::slice::from_ref(&noise), 1.0, 0.0);
         let slow = noise.iter().enumerate();
-        let slow: Vec<f64> = slow.map(|(k, n)| n + 5.0 * (0.1 * k as f64).sin()).collect();
+        let slow: Vec<f64> = slow
+            .map(|(k, n)| n + 5.0 * (0.1 * k as f64).sin())
+            .collect();
         let both = residual_noise(&[slow], 1.0, 0.0);
         assert!((alone.all - 0.5_f64.sqrt()).abs() < 0.02, "{alone:?}");
         assert!(both.white < 1.5 * alone.white && both.all > 8.0, "{both:?}");

@@ -9,4 +9,3 @@ mod predict;
 mod refusals;
 #[cfg(feature = "serde")]
 mod stored;
-mod scratch;

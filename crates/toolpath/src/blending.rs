@@ -112,7 +112,9 @@ fn blend<const D: usize>(
         (PathSegment::Line(_), PathSegment::Line(_)) => None,
         (PathSegment::Nurbs(_), _) | (_, PathSegment::Nurbs(_)) => None,
         // A curve whose curvature jumps itself is of no use where nothing but the curvature does.
-        _ if turns || (angle < ANGLES.0 && shape == Blend::Quintic && corner::jumps(&end, &begin)) => {
+        _ if turns
+            || (angle < ANGLES.0 && shape == Blend::Quintic && corner::jumps(&end, &begin)) =>
+        {
             Some(corner::between(shape, [before, after], tolerance)?)
         }
         _ => None,

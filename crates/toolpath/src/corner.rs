@@ -60,7 +60,8 @@ fn control<const D: usize>(
     to: &PathPoint<D>,
     d: f64,
 ) -> Vec<[f64; D]> {
-    let inner = |point: &PathPoint<D>, along: f64| add_scaled(&point.position, along, &point.tangent);
+    let inner =
+        |point: &PathPoint<D>, along: f64| add_scaled(&point.position, along, &point.tangent);
     if shape == Blend::Quintic {
         let h = 0.5 * d;
         let bent = |point: &PathPoint<D>, along: f64| {
@@ -95,7 +96,11 @@ fn distance<const D: usize>(control: &[[f64; D]], from: &[f64; D]) -> f64 {
     let i = least.unwrap_or(1);
     let [a, b, c] = [all[i - 1], all[i], all[i + 1]];
     let bend = a - 2.0 * b + c;
-    let below = if bend > 0.0 { (a - c) * (a - c) / (8.0 * bend) } else { 0.0 };
+    let below = if bend > 0.0 {
+        (a - c) * (a - c) / (8.0 * bend)
+    } else {
+        0.0
+    };
     (b - below).max(0.0).sqrt()
 }
 

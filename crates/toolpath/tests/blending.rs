@@ -95,7 +95,12 @@ fn with_arcs() -> Path<2> {
         arc([0.02 - across, across], [0.02, 0.0], [1.0, 1.0], 0.5 * half),
         line([0.02, top], [0.04, top + 0.02]),
         arc([0.05, top + 0.02], [0.04, top + 0.02], [0.0, 1.0], half),
-        arc([0.06, top + 0.03], [0.06, top + 0.02], [1.0, 0.0], 0.5 * half),
+        arc(
+            [0.06, top + 0.03],
+            [0.06, top + 0.02],
+            [1.0, 0.0],
+            0.5 * half,
+        ),
         line([0.07, top + 0.03], [0.07, top + 0.05]),
     ];
     Path::new(segments).unwrap()

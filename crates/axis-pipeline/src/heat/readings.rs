@@ -219,25 +219,26 @@ pub(super) fn constant(velocity: &[f64]) -> Vec<bool> {
     (0..v.len()).map(is_constant).collect()
 }
 
-/// Width of a class of speeds, as a share, and the share of the rows from which a class is a constant speed: while it
-/// accelerates an axis passes through hundreds of classes in a small part of the time.
+/// Width of a class of speeds, as a share, and the places, of 0.1 mm, from which a class is a constant speed: an axis
+/// that accelerates has a speed at few places only.
 const CLASS: f64 = 0.005;
-const RECURS: f64 = 0.01;
+const PLACES_OF_A_SPEED: usize = 8;
 
-/// The same of a reference that is not seen between its rows: a speed that recurs is a constant one.
-pub(super) fn recurring(velocity: &[f64]) -> Vec<bool> {
+/// The same of a reference that is not seen between its rows: a speed that is found at many places is a constant one.
+pub(super) fn recurring(position: &[f64], velocity: &[f64]) -> Vec<bool> {
     let class = |v: &f64| (v.abs().ln() / CLASS).round() as i64;
-    let mut classes: Vec<i64> = velocity
+    let mut found: Vec<(i64, i64)> = position
         .iter()
-        .filter(|v| **v != 0.0)
-        .map(class)
+        .zip(velocity)
+        .filter(|(_, v)| **v != 0.0)
+        .map(|(x, v)| (class(v), (1e4 * x).round() as i64))
         .collect();
-    classes.sort_unstable();
-    let least = (RECURS * classes.len() as f64).max(FEWEST);
+    found.sort_unstable();
+    found.dedup();
     let recurs = |v: &f64| {
         let of = class(v);
-        let count = classes.partition_point(|c| *c <= of) - classes.partition_point(|c| *c < of);
-        *v != 0.0 && count as f64 >= least
+        let until = |class: i64| found.partition_point(|(c, _)| *c < class);
+        *v != 0.0 && until(of + 1) - until(of) >= PLACES_OF_A_SPEED
     };
     velocity.iter().map(recurs).collect()
 }

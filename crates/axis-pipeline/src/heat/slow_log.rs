@@ -37,7 +37,7 @@ const LONGEST_SAMPLED: f64 = 5.5;
 
 /// Fewest positions in which a sampled reference must be seen: of a motion whose period is a multiple of the interval
 /// the same few states come again and again.
-const FEWEST_POSITIONS: usize = 40;
+const FEWEST_POSITIONS: usize = 20;
 
 /// How a log is read.
 #[derive(Clone)]
@@ -147,7 +147,10 @@ impl<'a> SlowLog<'a> {
         let read = match &source {
             Source::Duties { .. } => readings::of_rows(log, &time)?,
             Source::Reference {
-                position, constant, velocity, ..
+                position,
+                constant,
+                velocity,
+                ..
             } => {
                 let reference = readings::Reference {
                     position,
@@ -403,7 +406,7 @@ fn source<'a>(log: &Log, options: &SlowLogOptions<'a>) -> Result<Source<'a>, Hea
     let sampled = time.windows(2).any(|w| w[1] - w[0] > LONGEST_INTERVAL);
     let velocity = velocity.unwrap_or_else(|| derivative(time, &position));
     let constant = match sampled {
-        true => readings::recurring(&velocity),
+        true => readings::recurring(&position, &velocity),
         false => readings::constant(&velocity),
     };
     if sampled {

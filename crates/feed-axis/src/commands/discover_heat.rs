@@ -4,9 +4,9 @@ use axis_sim::effects::Effect;
 use axis_sim::{Axis, SixDigits};
 use axis_thermal::{DriftOver, Estimated, HeatEffect, HeatExplained, HeatGap, HeatResidual};
 use discrepancy::{
-    Assessment, ChannelGap, Confidence, Cost, Curve, Discovered, Discovery, EffectFound, FigureLogs,
-    Gap, Gaps, Level, Likeness, Overlay, ParameterFound, Recalibrated, Remedy, RemedyFound, Shown,
-    Unknown, Verdict,
+    Assessment, ChannelGap, Confidence, Cost, Curve, Discovered, Discovery, EffectFound,
+    FigureLogs, Gap, Gaps, Level, Likeness, Overlay, ParameterFound, Recalibrated, Remedy,
+    RemedyFound, Shown, Unknown, Verdict,
 };
 
 /// Names of the logs.
@@ -80,7 +80,11 @@ pub(super) fn discovered(machine: &Axis, found: &HeatExplained, logs: &Logs) -> 
         },
         figures: FigureLogs {
             logs: match logs.check.is_empty() {
-                true => logs.fit.iter().map(|log| format!("the last 25 % of {log}")).collect(),
+                true => logs
+                    .fit
+                    .iter()
+                    .map(|log| format!("the last 25 % of {log}"))
+                    .collect(),
                 false => logs.check.clone(),
             },
             took_part: true,
@@ -134,7 +138,10 @@ fn parameter(name: &str, unit: &str, of: &Estimated) -> ParameterFound {
 
 fn named(said: &Said, effect: &HeatEffect, found: &HeatExplained) -> EffectFound {
     let mut parameters = vec![parameter(said.parameter, said.unit, &effect.size)];
-    if let Some([viscous, dry, _]) = found.falls.as_ref().filter(|_| said.effect == WARMING.effect)
+    if let Some([viscous, dry, _]) = found
+        .falls
+        .as_ref()
+        .filter(|_| said.effect == WARMING.effect)
     {
         parameters.push(parameter("viscous_fall", "1/K", viscous));
         parameters.push(parameter("dry_fall", "1/K", dry));
@@ -207,11 +214,7 @@ fn notes(found: &HeatExplained) -> Vec<String> {
     notes
 }
 
-fn sentence(
-    verdict: Verdict,
-    both: &[(&Said, &HeatEffect)],
-    effects: &[EffectFound],
-) -> String {
+fn sentence(verdict: Verdict, both: &[(&Said, &HeatEffect)], effects: &[EffectFound]) -> String {
     let names: Vec<&str> = effects.iter().map(|effect| effect.name.as_str()).collect();
     let names = names.join(" and ");
     let drifts = both.iter().filter(|(_, effect)| effect.is_a_drift);
@@ -249,11 +252,16 @@ fn unknown(said: &Said, effect: &HeatEffect, found: &HeatExplained) -> Option<Un
     let longest = residuals
         .filter(|residual| residual.place.is_some() == of_growth)
         .max_by_key(|residual| residual.time.len())?;
-    let best = effect.rivals.iter().max_by(|a, b| a.1[1].total_cmp(&b.1[1]));
+    let best = effect
+        .rivals
+        .iter()
+        .max_by(|a, b| a.1[1].total_cmp(&b.1[1]));
     let best = best.filter(|_| effect.is_a_drift);
     Some(Unknown {
         channel: said.acts_in.to_owned(),
-        depends_on: best.map_or("time", |(rival, _)| rival.over.name()).to_owned(),
+        depends_on: best
+            .map_or("time", |(rival, _)| rival.over.name())
+            .to_owned(),
         formula: None,
         curve: Curve {
             variable: "time, s".to_owned(),
@@ -298,7 +306,9 @@ fn assessment(verdict: Verdict, effects: &[EffectFound]) -> Assessment {
     let remedy = |effect: &EffectFound| {
         let remedy = Remedy::of(&effect.name)?;
         let parameter = match effect.name == GROWTH.effect {
-            true => "growth predicted by the thermal network from the reference (heat --fit, heat --predict, compensate --after)",
+            true => {
+                "growth predicted by the thermal network from the reference (heat --fit, heat --predict, compensate --after)"
+            }
             false => "a plan with the friction of the predicted temperature (compensate --after)",
         };
         Some(RemedyFound {

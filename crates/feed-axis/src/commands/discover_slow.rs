@@ -115,7 +115,10 @@ pub(super) fn command(given: &Given<'_>, options: &Options) -> Result<()> {
 }
 
 fn names(paths: &[PathBuf]) -> Vec<String> {
-    paths.iter().map(|path| path.display().to_string()).collect()
+    paths
+        .iter()
+        .map(|path| path.display().to_string())
+        .collect()
 }
 
 /// A log of hours.
@@ -146,7 +149,8 @@ fn write(
         .iter()
         .map(|(key, value)| format!("thermal.{key}={}", SixDigits(*value)));
     let keys: Vec<String> = keys.collect();
-    let set: std::result::Result<Vec<SetKey>, String> = keys.iter().map(|key| key.parse()).collect();
+    let set: std::result::Result<Vec<SetKey>, String> =
+        keys.iter().map(|key| key.parse()).collect();
     let text = with_keys(&text, &set.map_err(miette::Report::msg)?)?;
     Axis::parse(&out.join(AXIS).display().to_string(), &text)?;
     let mut files = FileSet::new(out, &[DISCOVERY, AXIS, NEXT, REPORT])?;
