@@ -492,10 +492,10 @@ fn each_second(stretches: &[(Option<&Motion>, f64)]) -> Log {
         for _ in 0..*seconds as u32 {
             machine.run(*motion, 1.0, |_| 20.0);
             let t = machine.time;
-            let at = motion.map(|m| m.at(t.rem_euclid(m.duration())));
-            let [x, v, a] = at.map_or([0.45, 0.0, 0.0], |at| {
-                [at.position, at.velocity, at.acceleration]
-            });
+            let at = |t: f64| motion.map(|m| m.at(t.rem_euclid(m.duration())));
+            let [x, v] = at(t).map_or([0.45, 0.0], |at| [at.position, at.velocity]);
+            let ahead = at(t + 1e-4).map_or(0.0, |at| at.velocity);
+            let a = 1e4 * (ahead - v);
             let w = v / p.travel();
             let dry =
                 p.coulomb + (p.stiction - p.coulomb) * (-(w / p.stribeck_speed).powi(2)).exp();

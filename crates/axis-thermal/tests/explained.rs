@@ -142,8 +142,9 @@ fn each_of_the_two_is_named_where_it_acts_and_nowhere_else() {
     }
 }
 
-/// Half of the detection limits, or little more, is not named; twice that, or nearly, is.
+/// What is below the detection limits is not named; what is half as much again is.
 #[test]
+#[ignore = "slow: .ci/release.d/05-slow-tests.sh"]
 fn detection_limits_hold() {
     let hours = HeatHours::to_fit();
     let cold = (hours.air)(0.0);
@@ -151,7 +152,7 @@ fn detection_limits_hold() {
         viscosity: independent_axis::Viscosity::Exponential(per_kelvin),
         ..STEADY
     };
-    for (k, shares, are_named) in [(0.004, [0.7, 0.6], false), (0.016, [2.9, 1.9], true)] {
+    for (k, are_named) in [(0.003, false), (0.016, true)] {
         let machine = machine(k, falls(0.3 * k), cold);
         let found = explained(&log(&hours, machine.clone(), NOTHING, 3));
         assert_eq!(named(&found), [are_named; 2]);
@@ -162,13 +163,15 @@ fn detection_limits_hold() {
         {
             let share = truth(&hours, machine.clone(), effect.at)[i] / effect.limit;
             println!("{share} of {}", effect.limit);
-            assert!((share / shares[i] - 1.0).abs() < 0.15, "{share} {effect:?}");
+            let expected = if are_named { 1.5..5.0 } else { 0.3..0.95 };
+            assert!(expected.contains(&share), "{share} {effect:?}");
         }
     }
 }
 
 /// Drifts, jumps and sways that no heat makes.
 #[test]
+#[ignore = "slow: .ci/release.d/05-slow-tests.sh"]
 fn what_is_no_heat_is_not_named() {
     let hours = HeatHours::to_fit();
     let cold = (hours.air)(0.0);

@@ -92,38 +92,42 @@ impl<'a> Cases<'a> {
         Self { axis, cases }
     }
 
-    /// With the position from the scale; the friction's schedule is of the model that was fitted last.
+    /// With the position from the scale; the friction's schedule is of the models that were fitted to its power.
     pub fn of_scale(axis: &'a Axis, fitted: &[Fitted]) -> Self {
-        let (_, best) = &fitted[fitted.len() - 1];
-        let case = |what: &str, strategy, used| Case {
-            what: what.to_owned(),
-            strategy,
-            used,
-            model: best.clone(),
-            own: false,
+        let case = |what: &str, strategy, used, model: usize| {
+            let mut model = fitted[model].1.clone();
+            // The scale's own growth is not in the dynamic part, so none may be subtracted.
+            model.expansion.scale = 0.0;
+            model.expansion.bed = 0.0;
+            Case {
+                what: what.to_owned(),
+                strategy,
+                used,
+                model,
+                own: false,
+            }
         };
-        let cases = vec![
-            case("none", "none", Use::Nothing),
-            case("plan, friction of the cold axis", "plan", Use::Nothing),
-            case("plan, friction scheduled", "plan", Use::Both),
-            case("plan, the machine's own friction", "plan", Use::Machine),
-            case(
-                "adaptive, friction of the cold axis",
-                "adaptive",
-                Use::Nothing,
-            ),
-            case(
-                "feedback, friction of the cold axis",
-                "feedback",
-                Use::Nothing,
-            ),
-            case("feedback, friction scheduled", "feedback", Use::Both),
-            case(
-                "feedback, the machine's own friction",
-                "feedback",
-                Use::Machine,
-            ),
+        let last = fitted.len() - 1;
+        let (cold, scheduled, own) = (
+            "friction of the cold axis",
+            "friction scheduled",
+            "the machine's own friction",
+        );
+        let mut cases = vec![
+            case("none", "none", Use::Nothing, last),
+            case(&format!("plan, {cold}"), "plan", Use::Nothing, last),
         ];
+        for model in [last - 1, last] {
+            let what = format!("plan, {scheduled}; {}", fitted[model].0);
+            cases.push(case(&what, "plan", Use::Both, model));
+        }
+        cases.extend([
+            case(&format!("plan, {own}"), "plan", Use::Machine, last),
+            case(&format!("adaptive, {cold}"), "adaptive", Use::Nothing, last),
+            case(&format!("feedback, {cold}"), "feedback", Use::Nothing, last),
+            case(&format!("feedback, {scheduled}"), "feedback", Use::Both, last),
+            case(&format!("feedback, {own}"), "feedback", Use::Machine, last),
+        ]);
         Self { axis, cases }
     }
 
