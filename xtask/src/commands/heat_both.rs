@@ -125,7 +125,12 @@ impl<'a> Cases<'a> {
             case(&format!("plan, {own}"), "plan", Use::Machine, last),
             case(&format!("adaptive, {cold}"), "adaptive", Use::Nothing, last),
             case(&format!("feedback, {cold}"), "feedback", Use::Nothing, last),
-            case(&format!("feedback, {scheduled}"), "feedback", Use::Both, last),
+            case(
+                &format!("feedback, {scheduled}"),
+                "feedback",
+                Use::Both,
+                last,
+            ),
             case(&format!("feedback, {own}"), "feedback", Use::Machine, last),
         ]);
         Self { axis, cases }

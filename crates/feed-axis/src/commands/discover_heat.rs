@@ -66,7 +66,7 @@ pub(super) fn discovered(machine: &Axis, found: &HeatExplained, logs: &Logs) -> 
         schema: Discovery::SCHEMA,
         axis: machine.name.clone(),
         answer: "thermal-network".to_owned(),
-        notes: notes(found),
+        notes: notes(found, logs),
         verdict,
         sentence: sentence(verdict, &both, &effects),
         own_form: None,
@@ -78,17 +78,7 @@ pub(super) fn discovered(machine: &Axis, found: &HeatExplained, logs: &Logs) -> 
             fit: gap(&both, 0),
             check: gap(&both, 1),
         },
-        figures: FigureLogs {
-            logs: match logs.check.is_empty() {
-                true => logs
-                    .fit
-                    .iter()
-                    .map(|log| format!("the last 25 % of {log}"))
-                    .collect(),
-                false => logs.check.clone(),
-            },
-            took_part: true,
-        },
+        figures: FigureLogs::default(),
         recalibrated: levels(found),
         assessment: assessment(verdict, &effects),
         likenesses: both.iter().map(|(said, e)| likeness(said, e)).collect(),
@@ -203,8 +193,14 @@ fn gap(both: &[(&Said, &HeatEffect)], part: usize) -> Gap {
     }
 }
 
-fn notes(found: &HeatExplained) -> Vec<String> {
-    let mut notes = Vec::new();
+fn notes(found: &HeatExplained, logs: &Logs) -> Vec<String> {
+    let judged = match logs.check.is_empty() {
+        true => format!("the last 25 % of {}", logs.fit.join(", ")),
+        false => logs.check.join(", "),
+    };
+    let mut notes = vec![format!(
+        "the figures are from {judged}, which is not fitted and also decides what is named"
+    )];
     if found.growth.is_none() {
         notes.push("the logs have too few readings of growth (6 to fit, 3 to judge by): whether the screw grows is not answered; valid: place_mm and growth_um of a probe, or position_mm and motor_angle_rad".to_owned());
     }
