@@ -70,7 +70,8 @@ pub struct FittedGrowth {
 
 impl ThermalParameters {
     /// These numbers with the unknowns' factors such that the model grows as the logs say. In each log
-    /// all bodies begin at the first air's temperature.
+    /// all bodies begin at the first air's temperature. Logs without the friction's power leave the dry friction's fall as it
+    /// is.
     ///
     /// # Errors
     /// [`ThermalError`] if a log's duties are of another screw, no growth in them can be compared, or the
@@ -103,10 +104,15 @@ impl ThermalParameters {
             "K",
             "above 0",
         )?;
+        // Growth alone does not show how dry friction falls.
+        let mut stretches = logs.iter().flat_map(|log| &log.stretches);
+        let has_power = stretches.any(|s| s.friction.is_some_and(|power| power > 0.0));
+        let shown = |unknown: &ThermalUnknown| has_power || *unknown != ThermalUnknown::DryFall;
+        let unknowns: Vec<ThermalUnknown> = unknowns.iter().copied().filter(shown).collect();
         let problem = Problem {
             assumed: self,
             logs,
-            unknowns,
+            unknowns: &unknowns,
             how,
         };
         let logarithms = problem.solve()?;

@@ -9,12 +9,12 @@ use axis_sim::{Axis, SixDigits};
 use clap::Args;
 use miette::{IntoDiagnostic, Result, miette};
 
-use super::discover::moved;
 use super::discover_files::{AXIS, DISCOVERY, NEXT, REPORT};
 use super::discover_heat::{Logs, discovered};
 use super::discover_words::{Files, Found};
 use super::heat_program::shared_programs;
 use super::heat_slow::{ProbeAgainst, ProbeZero, of_log, slow_log};
+use super::moved_file::moved;
 use crate::context::read_text;
 use crate::exit::wrong_use;
 use crate::file_set::FileSet;

@@ -40,6 +40,7 @@ pub(crate) mod log;
 pub mod manual;
 pub(crate) mod merge;
 pub mod motions;
+mod moved_file;
 pub(crate) mod new;
 pub(crate) mod pipeline;
 pub(crate) mod report;
