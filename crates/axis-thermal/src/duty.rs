@@ -124,6 +124,31 @@ impl Duty {
         [mean(&self.dry), mean(&self.viscous)]
     }
 
+    /// The same motion with dry and viscous friction that are so many times those at the reference temperature.
+    #[must_use]
+    pub fn with_friction(&self, levels: [f64; 2]) -> Self {
+        let [dry, viscous] = levels;
+        let times = |of: &[f64], level: f64| of.iter().map(|power| level * power).collect();
+        let weights = [1.0, dry, viscous];
+        let mut torque = self.torque;
+        for (row, a) in torque.iter_mut().zip(weights) {
+            for (product, b) in row.iter_mut().zip(weights) {
+                *product *= a * b;
+            }
+        }
+        Self {
+            dry: times(&self.dry, dry),
+            viscous: times(&self.viscous, viscous),
+            torque,
+            ..self.clone()
+        }
+    }
+
+    /// Mean speed of the screw, whatever its direction, rad/s.
+    pub fn mean_speed(&self) -> f64 {
+        self.travel.iter().sum::<f64>() / self.duration
+    }
+
     /// Mean square of the motor's torque, where dry and viscous friction are the known ones times
     /// `factors`, (N·m)².
     pub fn torque_squared(&self, factors: [f64; 2]) -> f64 {

@@ -5,7 +5,7 @@ use crate::error::ThermalError;
 use crate::growth::Growth;
 use crate::model::ThermalModel;
 use crate::run::ThermalAccuracy;
-use crate::state::ThermalState;
+use crate::state::{HeatNode, ThermalState};
 use crate::work::AxisAtWork;
 
 /// What a reading of growth shows.
@@ -65,6 +65,8 @@ pub struct GrowthStretch {
     /// Mean power of the friction over the stretch, W: mean of torque times speed of the motor over whole
     /// repetitions of the duty. None if nothing was measured.
     pub friction: Option<f64>,
+    /// Bodies whose temperature was read at the end of the stretch, and what was read, °C.
+    pub temperatures: Vec<(HeatNode, f64)>,
 }
 
 /// A log that begins with all bodies at the temperature of the air.
@@ -119,6 +121,8 @@ pub struct FollowedLog {
     pub growth: Vec<FollowedGrowth>,
     /// Of the friction's power.
     pub friction: Vec<FollowedFriction>,
+    /// Of temperatures: number of the stretch, model less log, K.
+    pub temperatures: Vec<(usize, f64)>,
 }
 
 impl FollowedLog {
@@ -126,6 +130,26 @@ impl FollowedLog {
     pub fn errors(&self) -> impl Iterator<Item = f64> + '_ {
         self.growth.iter().map(|read| read.predicted - read.found)
     }
+
+    /// Readings of the friction's power; a standstill has none to compare.
+    pub(crate) fn powers(&self) -> impl Iterator<Item = &FollowedFriction> {
+        self.friction.iter().filter(|read| read.found > 0.0)
+    }
+}
+
+impl FollowedFriction {
+    /// Model less log as a share, weighted by its duration beside the usual one: in seconds a mean says little.
+    pub(crate) fn deviation(&self, usual: f64) -> f64 {
+        (self.duration / usual).sqrt() * (self.predicted / self.found - 1.0)
+    }
+}
+
+/// The usual duration of the stretches with a power, Σ t²/Σ t, s.
+pub(crate) fn usual_duration(followed: &[FollowedLog]) -> f64 {
+    let times = || followed.iter().flat_map(FollowedLog::powers);
+    let total: f64 = times().map(|read| read.duration).sum();
+    let squares: f64 = times().map(|read| read.duration * read.duration).sum();
+    squares / total
 }
 
 /// Positions nearer than this count as one, m.
@@ -193,7 +217,14 @@ impl GrowthLog {
                 .friction
                 .map(|power| ("power of the friction", power));
             let duration = [("duration", stretch.duration)];
-            for (channel, value) in read.chain(air).chain(friction).chain(duration) {
+            let bodies = stretch.temperatures.iter();
+            let bodies = bodies.map(|(_, found)| ("temperature of a body", *found));
+            for (channel, value) in read
+                .chain(air)
+                .chain(friction)
+                .chain(duration)
+                .chain(bodies)
+            {
                 if !value.is_finite() {
                     return Err(ThermalError::Log {
                         stretch: number + 1,
@@ -244,6 +275,9 @@ impl ThermalModel {
                 }
             }
             at_work = Some((&stretch.duty, network));
+            let read = stretch.temperatures.iter();
+            let read = read.map(|(node, found)| (number, state.of(*node) - found));
+            followed.temperatures.extend(read);
             for &[place, found] in &stretch.found {
                 let predicted = self.growth(&cold, &state, place).read(log.of);
                 let Some([_, found, predicted]) = zeros.counted([place, found, predicted]) else {

@@ -6,7 +6,7 @@
 //! how friction falls; the power that the motor spends on friction says that.
 //!
 //! ```text
-//! least   Σ ((δ_model(x, t) − δ_log)/σ)² + Σ (t_i/t̄) ((P_model/P_log − 1)/ρ)² + Σ (ln f_k/s)²     over the factors f_k
+//! least   Σ ((δ_model(x, t) − δ_log)/σ)² + Σ (t_i/t̄) ((P_model/P_log − 1)/ρ)² + Σ ((T_model − T_log)/τ)² + Σ (ln f_k/s)²     over the factors f_k
 //! ```
 //!
 //! t_i is the duration of the stretch that a power is the mean of, t̄ = Σ t_i²/Σ t_i over all logs: in seconds a mean
@@ -14,10 +14,11 @@
 //!
 //! by Levenberg and Marquardt's method over ln f, with differences for the derivatives.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use crate::error::{ThermalError, check};
-use crate::growth_log::{FollowedLog, GrowthLog};
+use crate::growth_log::{FollowedLog, GrowthLog, usual_duration};
+use crate::least_squares::least;
 use crate::model::ThermalModel;
 use crate::parameters::ThermalParameters;
 use crate::unknown::ThermalUnknown;
@@ -32,6 +33,9 @@ pub struct GrowthFit {
     /// ρ: the share by which the friction's power in the log and in the best model differ, over a stretch of the logs'
     /// usual duration.
     pub friction_uncertainty: f64,
+    /// By which a temperature in the log and that of its body differ, K: a sensor shows one place of a body that has
+    /// one temperature in the model.
+    pub temperature_uncertainty: f64,
     /// s: by which the logarithms of the factors may differ from 0.
     pub prior: f64,
     /// Most steps.
@@ -39,11 +43,12 @@ pub struct GrowthFit {
 }
 
 impl Default for GrowthFit {
-    /// 1 µm; 1 %; 0.7, about twofold; 30 steps.
+    /// 1 µm; 1 %; 0.5 K; 0.7, about twofold; 30 steps.
     fn default() -> Self {
         Self {
             uncertainty: 1e-6,
             friction_uncertainty: 0.01,
+            temperature_uncertainty: 0.5,
             prior: 0.7,
             iterations: 30,
         }
@@ -65,7 +70,8 @@ pub struct FittedGrowth {
 
 impl ThermalParameters {
     /// These numbers with the unknowns' factors such that the model grows as the logs say. In each log
-    /// all bodies begin at the first air's temperature.
+    /// all bodies begin at the first air's temperature. Logs without the friction's power leave the dry friction's fall as it
+    /// is.
     ///
     /// # Errors
     /// [`ThermalError`] if a log's duties are of another screw, no growth in them can be compared, or the
@@ -90,10 +96,23 @@ impl ThermalParameters {
         check(how.prior > 0.0, "prior", how.prior, "", "above 0")?;
         let share = how.friction_uncertainty;
         check(share > 0.0, "friction_uncertainty", share, "", "above 0")?;
+        let kelvins = how.temperature_uncertainty;
+        check(
+            kelvins > 0.0,
+            "temperature_uncertainty",
+            kelvins,
+            "K",
+            "above 0",
+        )?;
+        // Growth alone does not show how dry friction falls.
+        let mut stretches = logs.iter().flat_map(|log| &log.stretches);
+        let has_power = stretches.any(|s| s.friction.is_some_and(|power| power > 0.0));
+        let shown = |unknown: &ThermalUnknown| has_power || *unknown != ThermalUnknown::DryFall;
+        let unknowns: Vec<ThermalUnknown> = unknowns.iter().copied().filter(shown).collect();
         let problem = Problem {
             assumed: self,
             logs,
-            unknowns,
+            unknowns: &unknowns,
             how,
         };
         let logarithms = problem.solve()?;
@@ -117,14 +136,6 @@ struct Problem<'a> {
     how: &'a GrowthFit,
 }
 
-/// Step of the differences over ln f: losses are solved to 5 mK, and differences of the same steps
-/// nearly cancel that.
-const DIFFERENCE: f64 = 0.02;
-/// Change of ln f below which the fit has ended.
-const ENDED: f64 = 1e-3;
-/// Greatest damping.
-const STIFFEST: f64 = 1e8;
-
 impl Problem<'_> {
     fn parameters(&self, logarithms: &DVector<f64>) -> ThermalParameters {
         let mut parameters = self.assumed.clone();
@@ -141,70 +152,21 @@ impl Problem<'_> {
 
     /// Model less log over their uncertainties, and the prior's.
     fn residuals(&self, logarithms: &DVector<f64>) -> Result<DVector<f64>, ThermalError> {
-        let mut all = Vec::new();
         let followed = self.followed(logarithms)?;
-        // A standstill has no friction to compare.
-        let powers = || followed.iter().flat_map(|log| &log.friction);
-        let worked = || powers().filter(|read| read.found > 0.0);
-        let total: f64 = worked().map(|read| read.duration).sum();
-        let squares: f64 = worked().map(|read| read.duration * read.duration).sum();
-        let usual = squares / total;
-        all.extend(
-            followed
-                .iter()
-                .flat_map(|log| log.errors().map(|error| error / self.how.uncertainty)),
-        );
-        all.extend(worked().map(|read| {
-            let share = self.how.friction_uncertainty;
-            (read.duration / usual).sqrt() * (read.predicted / read.found - 1.0) / share
-        }));
+        let usual = usual_duration(&followed);
+        let growth = followed.iter().flat_map(FollowedLog::errors);
+        let powers = followed.iter().flat_map(FollowedLog::powers);
+        let temperatures = followed.iter().flat_map(|log| &log.temperatures);
+        let mut all: Vec<f64> = growth.map(|error| error / self.how.uncertainty).collect();
+        all.extend(powers.map(|read| read.deviation(usual) / self.how.friction_uncertainty));
+        all.extend(temperatures.map(|(_, error)| error / self.how.temperature_uncertainty));
         all.extend(logarithms.iter().map(|l| l / self.how.prior));
         Ok(DVector::from_vec(all))
     }
 
     fn solve(&self) -> Result<DVector<f64>, ThermalError> {
-        let n = self.unknowns.len();
-        let mut at = DVector::zeros(n);
-        let mut residuals = self.residuals(&at)?;
-        let mut damping = 1e-2;
-        for _ in 0..self.how.iterations {
-            let mut jacobian = DMatrix::zeros(residuals.len(), n);
-            for k in 0..n {
-                let mut moved = at.clone();
-                moved[k] += DIFFERENCE;
-                let change = (self.residuals(&moved)? - &residuals) / DIFFERENCE;
-                jacobian.set_column(k, &change);
-            }
-            let normal = jacobian.tr_mul(&jacobian);
-            let gradient = jacobian.tr_mul(&residuals);
-            let mut moved = None;
-            while damping < STIFFEST && moved.is_none() {
-                let mut damped = normal.clone();
-                for k in 0..n {
-                    damped[(k, k)] *= 1.0 + damping;
-                }
-                let step = damped.cholesky().map(|c| -c.solve(&gradient));
-                let next = step.map(|step| &at + step);
-                // A step beyond what numbers may be is too long.
-                let better = next.and_then(|next| {
-                    let there = self.residuals(&next).ok()?;
-                    (there.norm_squared() < residuals.norm_squared()).then_some((next, there))
-                });
-                match better {
-                    Some(better) => moved = Some(better),
-                    None => damping *= 4.0,
-                }
-            }
-            let Some((next, there)) = moved else {
-                return Ok(at);
-            };
-            damping = (0.25 * damping).max(1e-6);
-            let change = (&next - &at).amax();
-            (at, residuals) = (next, there);
-            if change < ENDED {
-                return Ok(at);
-            }
-        }
-        Ok(at)
+        let cold = DVector::zeros(self.unknowns.len());
+        let least = least(cold, (self.how.iterations, 0.0), |at| self.residuals(at))?;
+        Ok(least.at)
     }
 }

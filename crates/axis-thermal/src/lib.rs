@@ -25,6 +25,7 @@
 //! - [`GrowthPredictor`]: growth and friction while an axis works, from its reference alone, set right by a probe
 //!   now and then.
 //! - [`GrowthLog`], [`ThermalParameters::fit`]: a model from hours of logged growth.
+//! - [`ThermalParameters::explain`]: whether growth and friction that falls with warmth explain such logs.
 //!
 //! # Units
 //! SI, temperatures in °C. Of an axis that turns, torque and speed stand for force and speed.
@@ -65,14 +66,19 @@ mod check;
 mod defaults;
 mod duty;
 mod error;
+mod explained;
 mod friction;
 mod growth;
 mod growth_log;
+mod heat_effects;
 mod identify;
+mod least_squares;
 mod model;
 mod network;
 mod parameters;
 mod predict;
+mod residual_noise;
+mod rival_drift;
 mod run;
 mod screw;
 mod state;
@@ -81,12 +87,14 @@ mod work;
 
 pub use duty::{Duty, DutySample};
 pub use error::ThermalError;
+pub use explained::{Estimated, HeatEffect, HeatExplained, HeatGap, HeatResidual};
 pub use friction::{FrictionLaws, TemperatureLaw};
 pub use growth::{Growth, ThermalForce};
 pub use growth_log::{
     FollowedFriction, FollowedGrowth, FollowedLog, GrowthLog, GrowthOf, GrowthStretch, GrowthZero,
     GrowthZeros,
 };
+pub use heat_effects::HeldLog;
 pub use identify::{FittedGrowth, GrowthFit};
 pub use model::ThermalModel;
 pub use parameters::{
@@ -94,6 +102,7 @@ pub use parameters::{
     ThermalParameters, WindingLoss,
 };
 pub use predict::GrowthPredictor;
+pub use rival_drift::{DriftOver, RivalDrift};
 pub use run::{ThermalAccuracy, ThermalWork};
 pub use screw::{ScrewAir, ScrewEnds, ThermalScrew};
 pub use state::{HeatNode, ThermalState};

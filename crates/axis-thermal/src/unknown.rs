@@ -19,6 +19,8 @@ pub enum ThermalUnknown {
     NutIntoScrew,
     /// Fall of viscous friction with temperature.
     ViscousFall,
+    /// Fall of dry friction with temperature.
+    DryFall,
     /// Rise of the preload with the screw's temperature.
     PreloadRise,
     /// Air around the screw at rest.
@@ -50,11 +52,12 @@ const WHOLE: f64 = 0.98;
 
 impl ThermalUnknown {
     /// All.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::NutShare,
         Self::BearingsShare,
         Self::NutIntoScrew,
         Self::ViscousFall,
+        Self::DryFall,
         Self::PreloadRise,
         Self::StillAir,
         Self::TurningAir,
@@ -83,6 +86,7 @@ impl ThermalUnknown {
             }
             Self::NutIntoScrew => share(&mut p.shares.nut_into_screw, 0.0),
             Self::ViscousFall => scale_law(&mut p.friction.viscous, by),
+            Self::DryFall => scale_law(&mut p.friction.dry, by),
             Self::PreloadRise => p.friction.preload_per_kelvin *= by,
             Self::FrontCapacity => p.bodies.front_bearing.capacity *= by,
             Self::FrontToBed => p.links.front_bearing_to_bed *= by,

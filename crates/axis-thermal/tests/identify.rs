@@ -2,15 +2,15 @@
 //! with the power 2/3, free convection by ΔT^¼, shares and conductances 10 to 60 % off.
 
 use axis_thermal::{
-    Duty, GrowthFit, GrowthLog, GrowthOf, GrowthPredictor, GrowthStretch, GrowthZero, ThermalModel,
-    ThermalParameters, ThermalUnknown,
+    Duty, GrowthFit, GrowthLog, GrowthOf, GrowthPredictor, GrowthStretch, GrowthZero, HeatNode,
+    ThermalModel, ThermalParameters, ThermalUnknown,
 };
 use independent_axis::{HeatHours, HeatedScrew, Random};
 
 use crate::brute_force::{duty, model};
 
 /// What a controller's model assumes before it has seen a log.
-fn assumed() -> ThermalParameters {
+pub(crate) fn assumed() -> ThermalParameters {
     let mut assumed = model().parameters().clone();
     if let Some(screw) = &mut assumed.screw {
         screw.segments = 30;
@@ -51,6 +51,7 @@ fn hours(of: &HeatHours, places: &[f64], every: usize, noise: f64) -> Hours {
                     false => Vec::new(),
                 },
                 friction: Some((machine.friction_heat - spent) / FIVE_MINUTES),
+                temperatures: Vec::new(),
             });
             truth.push(PLACES.map(|x| machine.growth(cold, x)));
         }
@@ -231,6 +232,7 @@ fn a_log_with_a_value_that_is_no_number_names_it() {
         air: [20.0; 2],
         found: vec![[0.5, 1e-6]],
         friction: Some(100.0),
+        temperatures: vec![(HeatNode::Nut, 21.0)],
     };
     let refused = |change: fn(&mut GrowthStretch)| {
         let mut stretches = vec![stretch.clone(), stretch.clone()];
@@ -250,6 +252,10 @@ fn a_log_with_a_value_that_is_no_number_names_it() {
             "power of the friction",
         ),
         (refused(|s| s.duration = f64::NAN), "duration"),
+        (
+            refused(|s| s.temperatures[0].1 = f64::NAN),
+            "temperature of a body",
+        ),
     ] {
         let words = format!("the {channel} in stretch 2 of the log is NaN");
         assert!(message.contains(&words), "{message}");
@@ -266,6 +272,7 @@ fn a_log_without_growth_is_refused() {
         air: [20.0; 2],
         found: found.to_vec(),
         friction: None,
+        temperatures: Vec::new(),
     };
     let log = |stretches: Vec<GrowthStretch>, zero| GrowthLog {
         stretches,

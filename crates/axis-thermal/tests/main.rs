@@ -2,6 +2,7 @@
 
 mod brute_force;
 mod closed_forms;
+mod explained;
 mod growth;
 mod identify;
 mod predict;

@@ -392,3 +392,84 @@ fn moves_are_made_on_an_axis_that_warms_up() {
         );
     }
 }
+
+/// The nine duties of the example logs.
+fn duties() -> Vec<String> {
+    (1..=9)
+        .map(|n| format!("data/heat/duty-{n}.toml"))
+        .collect()
+}
+
+fn discover(arguments: &[&str]) -> Vec<String> {
+    let mut all: Vec<String> = vec!["discover".to_owned()];
+    all.extend(arguments.iter().map(|a| (*a).to_owned()));
+    all.push("--duties".to_owned());
+    all.extend(duties());
+    all
+}
+
+fn borrowed(all: &[String]) -> Vec<&str> {
+    all.iter().map(String::as_str).collect()
+}
+
+/// A log of hours of another machine: growth and friction that falls with warmth, with a page and an axis file.
+#[test]
+fn discover_names_growth_and_warming_friction_in_logs_of_hours() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().display().to_string();
+    let log = "data/heat/probed.csv";
+    let said = succeed(&borrowed(&discover(&[
+        "--axis", SCREW, "--fit", log, "--out", &out,
+    ])));
+    assert!(
+        said.contains("thermal-expansion and warming-friction"),
+        "{said}"
+    );
+    let text = std::fs::read_to_string(folder.path().join("discovery.json")).unwrap();
+    let found: discrepancy::Discovery = serde_json::from_str(&text).unwrap();
+    assert_eq!(found.verdict, discrepancy::Verdict::Explained);
+    assert_eq!(found.answer, "thermal-network");
+    assert_eq!(found.likenesses.len(), 2);
+    let growth = &found.effects.iter().find(|e| e.name == "thermal-expansion");
+    let growth = &growth.unwrap().parameters[0];
+    assert!(
+        growth.name == "growth" && growth.value > 1.5e-4,
+        "{growth:?}"
+    );
+    let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(page.contains("thermal network") && page.contains("growth at 500 mm"));
+    // The axis file is one of the fitted numbers.
+    let axis = folder.path().join("axis.toml").display().to_string();
+    let hour = found_in(&axis);
+    assert!(hour["keys_of_the_file"].as_u64().unwrap() > 10);
+}
+
+fn found_in(axis: &str) -> serde_json::Value {
+    found(&["--axis", axis, "--duration", "10min"])
+}
+
+#[test]
+fn discover_says_what_a_log_of_hours_needs() {
+    let log = "data/heat/probed.csv";
+    let base = ["--axis", SCREW, "--fit", log];
+    for (more, words) in [
+        (
+            vec!["--accept", "backlash"],
+            "--accept is for logs of motion",
+        ),
+        (vec!["--balance"], "--balance is for logs of motion"),
+    ] {
+        let mut all = base.to_vec();
+        all.extend(more);
+        let message = refuse(&borrowed(&discover(&all)));
+        assert!(message.contains(words), "{message}");
+    }
+    let bare = "data/axes/screw-datasheet.toml";
+    let message = refuse(&borrowed(&discover(&["--axis", bare, "--fit", log])));
+    assert!(
+        message.contains("no [thermal]") && message.contains("nut_viscous_share"),
+        "{message}"
+    );
+    let message = refuse(&["discover", "--axis", SCREW, "--fit", log]);
+    assert!(message.contains("has duty 1"), "{message}");
+}

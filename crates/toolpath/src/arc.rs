@@ -135,6 +135,19 @@ impl<const D: usize> Arc<D> {
         [along, planar * k, planar * k * k]
     }
 
+    /// The part between two arc lengths, m.
+    pub(crate) fn part(&self, [from, to]: [f64; 2]) -> Self {
+        let phi = from / self.speed;
+        let (sin, cos) = libm::sincos(phi);
+        Self {
+            centre: add_scaled(&self.centre, phi, &self.rise),
+            u: add_scaled(&scaled(cos, &self.u), sin, &self.v),
+            v: add_scaled(&scaled(cos, &self.v), -sin, &self.u),
+            sweep: (to - from) / self.speed,
+            ..*self
+        }
+    }
+
     /// The point at arc length `s` (m), also beyond the ends.
     pub fn at(&self, s: f64) -> PathPoint<D> {
         let k = 1.0 / self.speed;

@@ -60,6 +60,7 @@ mod arc;
 mod blend;
 mod blending;
 mod contour;
+mod corner;
 mod error;
 mod feed;
 mod flattened;

@@ -57,9 +57,9 @@ fn a_right_angle_is_blended_as_its_closed_form_says() {
     }
 }
 
-/// Corners at an arc, and a path that turns back, stay.
+/// A path that turns back stays, as does one without a corner.
 #[test]
-fn what_is_no_corner_of_lines_stays() {
+fn what_is_no_corner_stays() {
     let blending = PathBlending {
         tolerance: 1e-3,
         shape: Blend::Quintic,
@@ -68,10 +68,6 @@ fn what_is_no_corner_of_lines_stays() {
     assert_eq!(back.blended(&blending).unwrap(), back);
     let straight = Path::polyline(&[[0.0, 0.0], [0.02, 0.0], [0.04, 0.0]]).unwrap();
     assert_eq!(straight.blended(&blending).unwrap(), straight);
-    let arc = toolpath::Arc::new([0.02, 0.01], [0.02, 0.0], [-1.0, 0.0], 1.0).unwrap();
-    let line = toolpath::Line::new([0.0, 0.0], [0.02, 0.0]).unwrap();
-    let with_arc = Path::new(vec![line.into(), arc.into()]).unwrap();
-    assert_eq!(with_arc.blended(&blending).unwrap(), with_arc);
     let refused = back.blended(&PathBlending {
         tolerance: 0.0,
         ..blending
@@ -83,6 +79,91 @@ fn what_is_no_corner_of_lines_stays() {
         ..blending
     });
     assert!(refused.unwrap_err().to_string().contains("tolerance"));
+}
+
+/// Lines and arcs one after the other, each pair with a corner or, of the last two, a jump of curvature alone.
+fn with_arcs() -> Path<2> {
+    let line = |from, to| PathSegment::from(toolpath::Line::new(from, to).unwrap());
+    let arc = |centre, start, towards, sweep| {
+        PathSegment::from(toolpath::Arc::new(centre, start, towards, sweep).unwrap())
+    };
+    let half = std::f64::consts::PI;
+    let across = 0.01 * 0.5_f64.sqrt();
+    let top = 2.0 * across;
+    let segments = vec![
+        line([0.0, 0.0], [0.02, 0.0]),
+        arc([0.02 - across, across], [0.02, 0.0], [1.0, 1.0], 0.5 * half),
+        line([0.02, top], [0.04, top + 0.02]),
+        arc([0.05, top + 0.02], [0.04, top + 0.02], [0.0, 1.0], half),
+        arc(
+            [0.06, top + 0.03],
+            [0.06, top + 0.02],
+            [1.0, 0.0],
+            0.5 * half,
+        ),
+        line([0.07, top + 0.03], [0.07, top + 0.05]),
+    ];
+    Path::new(segments).unwrap()
+}
+
+/// Every blend passes its corner at the tolerance and stays within it of the path, its ends have the path's tangent and, of
+/// degree 5, its curvature; nothing stops the feed any more.
+#[test]
+fn corners_at_arcs_are_blended_within_the_tolerance() {
+    let path = with_arcs();
+    let dense: Vec<[f64; 2]> = path.segments().iter().flat_map(along).collect();
+    let corners: Vec<[f64; 2]> = path.segments()[1..]
+        .iter()
+        .map(|segment| segment.at(0.0).position)
+        .collect();
+    assert_eq!(path.corners().len(), 4);
+    for shape in SHAPES {
+        for tolerance in [1e-5, 1e-4] {
+            let blended = path.blended(&PathBlending { tolerance, shape }).unwrap();
+            let all = blended.segments();
+            // The curvature alone jumps at the last one.
+            let blends = if shape == Blend::Quintic { 5 } else { 4 };
+            assert_eq!(all.len(), 6 + blends, "{shape:?}");
+            assert!(blended.corners().is_empty());
+            for corner in &corners[..4] {
+                let near = all.iter().flat_map(along).map(|p| distance(p, *corner));
+                let near = near.fold(f64::INFINITY, f64::min);
+                assert!((near / tolerance - 1.0).abs() < 0.02, "{near} {tolerance}");
+            }
+            for segment in all {
+                let far = along(segment).into_iter().map(|p| from_chain(p, &dense));
+                let far = far.fold(0.0, f64::max);
+                assert!(far < 1.02 * tolerance + 1e-7, "{far} {tolerance} {shape:?}");
+            }
+            for pair in all.windows(2) {
+                let [a, b] = [pair[0].at(f64::INFINITY), pair[1].at(0.0)];
+                assert!(distance(a.position, b.position) < 1e-12);
+                assert!(distance(a.tangent, b.tangent) < 1e-9);
+                if shape == Blend::Quintic {
+                    assert!(distance(a.curvature, b.curvature) < 1e-3, "{a:?} {b:?}");
+                }
+            }
+        }
+    }
+}
+
+/// What blends at arcs save: no limit is passed, and the feed need not stop.
+#[test]
+fn a_blend_at_an_arc_is_faster_than_a_stop() {
+    let path = with_arcs();
+    let limits = FeedLimits::equal(0.05, 0.05, 1.0, 20.0);
+    let time = |path: &Path<2>| {
+        let profile = FeedProfile::plan(path, &limits).unwrap();
+        within_limits(&profile, &limits, 4000);
+        profile.duration()
+    };
+    let of = |tolerance| {
+        let shape = Blend::Quintic;
+        time(&path.blended(&PathBlending { tolerance, shape }).unwrap())
+    };
+    let (stops, [fine, coarse]) = (time(&path), [1e-4, 1e-3].map(of));
+    println!("{stops} {fine} {coarse}");
+    assert!(coarse < 0.9 * stops, "{stops} {fine} {coarse}");
 }
 
 fn chains(points: std::ops::Range<usize>) -> impl Strategy<Value = Vec<[f64; 2]>> {

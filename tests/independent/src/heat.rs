@@ -121,6 +121,11 @@ impl HeatedScrew {
         }
     }
 
+    /// The axis' numbers.
+    pub fn axis(&self) -> Parameters {
+        self.axis
+    }
+
     /// Runs on for `duration` s, the motion without end, in its phase at each time since the start (or
     /// standing still), in air of a temperature that follows that time (s).
     pub fn run(&mut self, motion: Option<&Motion>, duration: f64, air: impl Fn(f64) -> f64) {

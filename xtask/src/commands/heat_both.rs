@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use axis_pipeline::PipelineError;
-use axis_pipeline::heat::{DutyHeat, HeatAhead, HeatError, ModelHeat, WarmMoves};
+use axis_pipeline::heat::{DutyHeat, HeatAhead, HeatError, ModelHeat, WarmMoves, warm_axis};
 use axis_pipeline::moves::NamedMotion;
 use axis_pipeline::strategies::{
     NONE, NextMove, Predictors, STRATEGIES, SharedMotion, Strategy, StrategyKind, named,
@@ -35,6 +35,8 @@ enum Use {
     Nothing,
     GrowthAlone,
     Both,
+    /// The friction of the machine itself.
+    Machine,
 }
 
 /// A row of a table.
@@ -90,37 +92,77 @@ impl<'a> Cases<'a> {
         Self { axis, cases }
     }
 
-    /// With the position from the scale; the friction's schedule is of the model that was fitted last.
+    /// With the position from the scale; the friction's schedule is of the models that were fitted to its power.
     pub fn of_scale(axis: &'a Axis, fitted: &[Fitted]) -> Self {
-        let (_, best) = &fitted[fitted.len() - 1];
-        let case = |what: &str, strategy, used| Case {
-            what: what.to_owned(),
-            strategy,
-            used,
-            model: best.clone(),
-            own: false,
+        let case = |what: &str, strategy, used, model: usize| {
+            let mut model = fitted[model].1.clone();
+            // The scale's own growth is not in the dynamic part, so none may be subtracted.
+            model.expansion.scale = 0.0;
+            model.expansion.bed = 0.0;
+            Case {
+                what: what.to_owned(),
+                strategy,
+                used,
+                model,
+                own: false,
+            }
         };
-        let cases = vec![
-            case("none", "none", Use::Nothing),
-            case("plan, friction of the cold axis", "plan", Use::Nothing),
-            case("plan, friction scheduled", "plan", Use::Both),
-            case(
-                "adaptive, friction of the cold axis",
-                "adaptive",
-                Use::Nothing,
-            ),
-            case(
-                "feedback, friction of the cold axis",
-                "feedback",
-                Use::Nothing,
-            ),
+        let last = fitted.len() - 1;
+        let (cold, scheduled, own) = (
+            "friction of the cold axis",
+            "friction scheduled",
+            "the machine's own friction",
+        );
+        let mut cases = vec![
+            case("none", "none", Use::Nothing, last),
+            case(&format!("plan, {cold}"), "plan", Use::Nothing, last),
         ];
+        for model in [last - 1, last] {
+            let what = format!("plan, {scheduled}; {}", fitted[model].0);
+            cases.push(case(&what, "plan", Use::Both, model));
+        }
+        cases.extend([
+            case(&format!("plan, {own}"), "plan", Use::Machine, last),
+            case(&format!("adaptive, {cold}"), "adaptive", Use::Nothing, last),
+            case(&format!("feedback, {cold}"), "feedback", Use::Nothing, last),
+            case(
+                &format!("feedback, {scheduled}"),
+                "feedback",
+                Use::Both,
+                last,
+            ),
+            case(&format!("feedback, {own}"), "feedback", Use::Machine, last),
+        ]);
         Self { axis, cases }
     }
 
     /// What each row is called.
     pub fn names(&self) -> Vec<&str> {
         self.cases.iter().map(|case| case.what.as_str()).collect()
+    }
+
+    /// Peaks of a strategy whose model has the machine's friction of each time: what knowing it any better would leave.
+    fn with_its_own_friction(
+        &self,
+        case: &Case,
+        truth: &mut OtherHeat,
+        after: &[f64; 4],
+        moves: &[NamedMotion; 2],
+    ) -> Result<[f64; 4]> {
+        let mut peaks_um = [0.0; 4];
+        for (peak, time) in peaks_um.iter_mut().zip(after) {
+            truth.until(*time).into_diagnostic()?;
+            let friction = truth.friction().into_diagnostic()?;
+            let axis = warm_axis(self.axis, friction).into_diagnostic()?;
+            let pass = 2.0 * moves[0].motion.duration();
+            let warm = WarmMoves::new(&axis, &mut Constant, &[0.0], pass).into_diagnostic()?;
+            let mut strategy = strategy(&axis, case.strategy, Use::Nothing)?;
+            let passes = warm.run(&mut *strategy, moves, None, |_: &mut Measured| (), || ());
+            let passes = passes.into_diagnostic()?;
+            let all = passes.iter().flatten().map(|run| run.figures.max);
+            *peak = all.fold(0.0, f64::max);
+        }
+        Ok(peaks_um)
     }
 
     /// Computes a row. `with_growth`: the error of the table, else the dynamic part alone.
@@ -139,15 +181,22 @@ impl<'a> Cases<'a> {
         // Two strokes on end.
         let pass = 2.0 * stroke.duration();
         let after = AFTER.map(|minutes| 60.0 * minutes);
-        let warm = WarmMoves::new(self.axis, &mut truth, &after, pass).into_diagnostic()?;
-        let model = ThermalModel::new(case.model.clone()).into_diagnostic()?;
-        let duty = [stroke.clone()];
-        let heat = ModelHeat::of(self.axis, model, &duty, 20.0).into_diagnostic()?;
         let moves = [1, 2].map(|pass| NamedMotion {
             name: format!("stroke {pass}"),
             motion: stroke.clone(),
             learned: None,
         });
+        if case.used == Use::Machine {
+            let peaks_um = self.with_its_own_friction(case, &mut truth, &after, &moves)?;
+            return Ok(Compensated {
+                what: case.what.clone(),
+                peaks_um,
+            });
+        }
+        let warm = WarmMoves::new(self.axis, &mut truth, &after, pass).into_diagnostic()?;
+        let model = ThermalModel::new(case.model.clone()).into_diagnostic()?;
+        let duty = [stroke.clone()];
+        let heat = ModelHeat::of(self.axis, model, &duty, 20.0).into_diagnostic()?;
         let mut strategy = strategy(self.axis, case.strategy, case.used)?;
         let heat = (case.used != Use::Nothing).then_some(heat);
         let passes = warm.run(&mut *strategy, &moves, heat, |_: &mut Measured| (), || ());
@@ -163,6 +212,23 @@ impl<'a> Cases<'a> {
             what: case.what.clone(),
             peaks_um,
         })
+    }
+}
+
+/// An axis that stays as it is.
+struct Constant;
+
+impl DutyHeat for Constant {
+    fn until(&mut self, _: f64) -> std::result::Result<(), HeatError> {
+        Ok(())
+    }
+
+    fn friction(&self) -> std::result::Result<[f64; 2], HeatError> {
+        Ok([1.0; 2])
+    }
+
+    fn growth(&self, _: f64) -> f64 {
+        0.0
     }
 }
 
@@ -191,7 +257,15 @@ impl DutyHeat for OtherHeat {
     }
 
     fn friction(&self) -> std::result::Result<[f64; 2], HeatError> {
-        Ok(self.machine.friction_factors(0.7))
+        // The loop has one friction for all of the stroke: that of the mean over it.
+        const PLACES: u32 = 50;
+        let mut mean = [0.0; 2];
+        for k in 0..PLACES {
+            let x = 0.45 + 0.5 * (f64::from(k) + 0.5) / f64::from(PLACES);
+            let there = self.machine.friction_factors(x);
+            mean = [0, 1].map(|i| mean[i] + there[i] / f64::from(PLACES));
+        }
+        Ok(mean)
     }
 
     fn growth(&self, x: f64) -> f64 {

@@ -4,7 +4,7 @@ use axis_thermal::{
     Duty, DutySample, GrowthFit, GrowthLog, GrowthOf, GrowthPredictor, GrowthStretch, ThermalModel,
     ThermalParameters, ThermalUnknown,
 };
-use independent_axis::{HeatHours, HeatedScrew, Motion, Parameters, Random};
+use independent_axis::{HeatHours, HeatedScrew, Motion, Parameters, Random, there_and_back};
 use miette::{IntoDiagnostic, Result};
 use serde::{Deserialize, Serialize};
 
@@ -20,6 +20,8 @@ pub struct Identified {
 
 const PLACES: [f64; 5] = [0.2, 0.5, 0.8, 1.1, 1.4];
 const FIVE_MINUTES: f64 = 300.0;
+/// Two slow strokes there and back of 0.3 m, s.
+const SLOW_STROKES: f64 = 60.0;
 
 /// A log: at which places growth is found, every how many five minutes, with which noise (m), and with which noise
 /// (as a share) the friction's power.
@@ -29,15 +31,17 @@ struct Log {
     every: usize,
     noise: f64,
     friction: Option<f64>,
+    slow: bool,
 }
 
-const LOGS: [Log; 4] = [
+const LOGS: [Log; 5] = [
     Log {
         name: "each 5 min, 5 places, noise 0.5 µm",
         places: &PLACES,
         every: 1,
         noise: 0.5e-6,
         friction: None,
+        slow: false,
     },
     Log {
         name: "each 10 min, 2 places, noise 0.5 µm",
@@ -45,6 +49,7 @@ const LOGS: [Log; 4] = [
         every: 2,
         noise: 0.5e-6,
         friction: None,
+        slow: false,
     },
     Log {
         name: "each 15 min, 1 place, noise 1 µm",
@@ -52,6 +57,7 @@ const LOGS: [Log; 4] = [
         every: 3,
         noise: 1e-6,
         friction: None,
+        slow: false,
     },
     Log {
         name: "each 10 min, 2 places, noise 0.5 µm, and friction's power with noise of 0.5 %",
@@ -59,6 +65,15 @@ const LOGS: [Log; 4] = [
         every: 2,
         noise: 0.5e-6,
         friction: Some(0.005),
+        slow: false,
+    },
+    Log {
+        name: "each 10 min, 2 places, noise 0.5 µm, and friction's power with noise of 0.5 %, a minute of it at 20 mm/s",
+        places: &TWO,
+        every: 2,
+        noise: 0.5e-6,
+        friction: Some(0.005),
+        slow: true,
     },
 ];
 
@@ -117,25 +132,37 @@ fn logged(
     let mut random = Random::new(7, 3);
     let (mut stretches, mut truth) = (Vec::new(), Vec::new());
     for (motion, count) in &hours.duties {
-        let duty = duty(model, motion.as_ref());
-        for _ in 0..*count {
-            let (from, spent) = (machine.time, machine.friction_heat);
-            machine.run(motion.as_ref(), FIVE_MINUTES, air);
-            let probed = (stretches.len() + 1) % log.every == 0;
-            let probe = |x: &f64| [*x, machine.growth(cold, *x) + log.noise * random.normal()];
-            stretches.push(GrowthStretch {
-                duty: duty.clone(),
-                duration: FIVE_MINUTES,
-                air: [air(from), air(machine.time)],
-                found: match probed {
-                    true => log.places.iter().map(probe).collect(),
-                    false => Vec::new(),
-                },
-                friction: log.friction.map(|noise| {
-                    let power = (machine.friction_heat - spent) / FIVE_MINUTES;
-                    power * (1.0 + noise * random.normal())
-                }),
-            });
+        let slow = there_and_back(0.55, 0.85, 0.02, 0.0);
+        for number in 1..=*count {
+            let is_slow = log.slow && number % 2 == 0;
+            let mut parts = vec![(motion.as_ref(), FIVE_MINUTES)];
+            if is_slow {
+                parts = vec![
+                    (motion.as_ref(), FIVE_MINUTES - SLOW_STROKES),
+                    (Some(&slow), SLOW_STROKES),
+                ];
+            }
+            let last = parts.len() - 1;
+            let probed = (truth.len() + 1) % log.every == 0;
+            for (part, (motion, seconds)) in parts.into_iter().enumerate() {
+                let (from, spent) = (machine.time, machine.friction_heat);
+                machine.run(motion, seconds, air);
+                let probe = |x: &f64| [*x, machine.growth(cold, *x) + log.noise * random.normal()];
+                stretches.push(GrowthStretch {
+                    duty: duty(model, motion),
+                    duration: seconds,
+                    air: [air(from), air(machine.time)],
+                    found: match probed && part == last {
+                        true => log.places.iter().map(probe).collect(),
+                        false => Vec::new(),
+                    },
+                    friction: log.friction.map(|noise| {
+                        let power = (machine.friction_heat - spent) / seconds;
+                        power * (1.0 + noise * random.normal())
+                    }),
+                    temperatures: Vec::new(),
+                });
+            }
             truth.push(PLACES.map(|x| machine.growth(cold, x)));
         }
     }
@@ -155,6 +182,7 @@ pub fn identified(model: &ThermalModel) -> Result<(Vec<Identified>, Vec<Fitted>)
         every: 1,
         noise: 0.0,
         friction: None,
+        slow: false,
     };
     let (check, truth) = logged(&HeatHours::to_check(), &coarse, &none);
     let mut fitted: Vec<Fitted> = vec![("the assumed numbers".to_owned(), assumed.clone())];

@@ -6,7 +6,7 @@ use axis_thermal::{FittedGrowth, FollowedLog, GrowthFit, GrowthLog, ThermalModel
 use super::{HeatError, SlowLog};
 
 /// Most segments of the screw while a model is fitted: growth of more differs by less than what is fitted.
-const SEGMENTS: usize = 30;
+pub(super) const SEGMENTS: usize = 30;
 
 /// Errors on readings that were not fitted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -90,7 +90,7 @@ pub fn fit(axis: &Axis, logs: &[SlowLog<'_>], held_out: f64) -> Result<HeatFit, 
 }
 
 /// How many stretches are fitted.
-fn fitted_part(log: &GrowthLog, held_out: f64) -> usize {
+pub(super) fn fitted_part(log: &GrowthLog, held_out: f64) -> usize {
     let whole: f64 = log.stretches.iter().map(|s| s.duration).sum();
     let (mut until, mut count) = (0.0, 0);
     for stretch in &log.stretches {

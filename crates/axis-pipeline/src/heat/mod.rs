@@ -8,6 +8,7 @@
 
 mod ahead;
 mod channels;
+mod explain;
 mod follow;
 mod identify;
 mod readings;
@@ -18,6 +19,7 @@ use axis_sim::SixDigits;
 use thiserror::Error;
 
 pub use ahead::HeatAhead;
+pub use explain::{explain, is_slow};
 pub use follow::{FollowOptions, FollowedRow, Following, follow};
 pub use identify::{HeatFit, HeldOut, fit};
 pub use slow_log::{SlowLog, SlowLogOptions, probe_of, zero_of};

@@ -28,6 +28,8 @@ pub(super) struct Readings {
 pub(super) struct Reference<'a> {
     pub position: &'a [f64],
     pub velocity: &'a [f64],
+    /// Rows at constant speed.
+    pub constant: &'a [bool],
 }
 
 /// Of a log that names duties: each row is an end, and a reading if nothing says otherwise.
@@ -206,6 +208,41 @@ impl Line {
     }
 }
 
+/// Rows of a reference at constant speed: it is that of the rows beside.
+pub(super) fn constant(velocity: &[f64]) -> Vec<bool> {
+    let v = velocity;
+    let is_constant = |k: usize| {
+        let beside = [k.saturating_sub(1), (k + 1).min(v.len() - 1)];
+        let change = beside.map(|other| (v[other] - v[k]).abs());
+        v[k] != 0.0 && change[0].max(change[1]) <= CONSTANT * v[k].abs()
+    };
+    (0..v.len()).map(is_constant).collect()
+}
+
+/// Width of a class of speeds, as a share, and the places, of 0.1 mm, from which a class is a constant speed: an axis
+/// that accelerates has a speed at few places only.
+const CLASS: f64 = 0.005;
+const PLACES_OF_A_SPEED: usize = 8;
+
+/// The same of a reference that is not seen between its rows: a speed that is found at many places is a constant one.
+pub(super) fn recurring(position: &[f64], velocity: &[f64]) -> Vec<bool> {
+    let class = |v: &f64| (v.abs().ln() / CLASS).round() as i64;
+    let mut found: Vec<(i64, i64)> = position
+        .iter()
+        .zip(velocity)
+        .filter(|(_, v)| **v != 0.0)
+        .map(|(x, v)| (class(v), (1e4 * x).round() as i64))
+        .collect();
+    found.sort_unstable();
+    found.dedup();
+    let recurs = |v: &f64| {
+        let of = class(v);
+        let until = |class: i64| found.partition_point(|(c, _)| *c < class);
+        *v != 0.0 && until(of + 1) - until(of) >= PLACES_OF_A_SPEED
+    };
+    velocity.iter().map(recurs).collect()
+}
+
 /// Growth about the time of a row, the mean of both directions at each place.
 fn by_directions(
     time: &[f64],
@@ -222,11 +259,10 @@ fn by_directions(
     };
     let mut lines = vec![[Line::default(); 2]; places.len()];
     for k in rows {
-        let v = reference.velocity;
-        let change = (v[k + 1] - v[k]).abs().max((v[k] - v[k - 1]).abs());
-        if v[k] == 0.0 || change > CONSTANT * v[k].abs() {
+        if !reference.constant[k] {
             continue;
         }
+        let v = reference.velocity;
         for (place, both) in places.iter().zip(&mut lines) {
             let beside = reference.position[k] - place;
             if beside.abs() <= half {

@@ -5,9 +5,11 @@
 //! | `t_s` | time |
 //! | `duty_1` | number of the duty since the row before, from 1; 0 at standstill |
 //! | or `position_ref_m` | the reference, five times a second or oftener; `velocity_ref_m_s` if it is there |
+//! | or both of them | sampled every 5 s or oftener: each row is one of the states that the motion passes through |
 //! | `air_degc` | temperature of the air; if it is not there the one that is stated |
 //! | `place_m`, `growth_m` | where growth was probed, and what was found; `probed_1` is 1 in rows in which it was |
 //! | or `position_m`, `motor_angle_rad` | the scale and the motor's encoder |
+//! | `nut_degc`, `front_bearing_degc`, … | temperatures of bodies that have a sensor (winding, housing, rear_bearing, table, bed, scale) |
 //! | `friction_w` | mean power of the friction since the row before; 0 in rows without it |
 //! | or `torque_n_m`, or `iq_a` | torque or q current of the motor, beside a reference |
 //!
@@ -17,7 +19,7 @@ use axis_log::Log;
 use axis_sim::Axis;
 use axis_sim::thermal::LossModel;
 use axis_thermal::{
-    Duty, DutySample, GrowthLog, GrowthOf, GrowthStretch, GrowthZero, ThermalModel,
+    Duty, DutySample, GrowthLog, GrowthOf, GrowthStretch, GrowthZero, HeatNode, ThermalModel,
 };
 use trajectories::Setpoint;
 
@@ -26,8 +28,16 @@ use super::channels::{CURRENT, LENGTH, NUMBER, POWER, SPEED, TEMPERATURE, TORQUE
 use super::readings::{self, Reading};
 use crate::strategies::SharedMotion;
 
-/// Longest sampling interval of a reference, s: beyond it speeds are not known.
+/// Longest sampling interval of a reference without its speed, s: beyond it speeds are not known.
 const LONGEST_INTERVAL: f64 = 0.21;
+
+/// Longest sampling interval of a reference with its speed, s: of a stretch of 5 min it shows 60 states, and the mean
+/// of a loss over them is off by some 5 % of what the loss scatters by.
+const LONGEST_SAMPLED: f64 = 5.5;
+
+/// Fewest positions in which a sampled reference must be seen: of a motion whose period is a multiple of the interval
+/// the same few states come again and again.
+const FEWEST_POSITIONS: usize = 20;
 
 /// How a log is read.
 #[derive(Clone)]
@@ -96,6 +106,10 @@ enum Source<'a> {
     Reference {
         position: Vec<f64>,
         velocity: Vec<f64>,
+        /// Whether rows are states of a motion that is not seen between them.
+        sampled: bool,
+        /// Rows at constant speed.
+        constant: Vec<bool>,
     },
 }
 
@@ -110,6 +124,7 @@ pub struct SlowLog<'a> {
     /// Rows at which a stretch ends, and what was read there.
     ends: Vec<Reading>,
     friction: Option<Vec<f64>>,
+    temperatures: Vec<(HeatNode, Vec<f64>)>,
     of: GrowthOf,
     zero: GrowthZero,
 }
@@ -131,8 +146,17 @@ impl<'a> SlowLog<'a> {
         let source = source(log, options)?;
         let read = match &source {
             Source::Duties { .. } => readings::of_rows(log, &time)?,
-            Source::Reference { position, velocity } => {
-                let reference = readings::Reference { position, velocity };
+            Source::Reference {
+                position,
+                constant,
+                velocity,
+                ..
+            } => {
+                let reference = readings::Reference {
+                    position,
+                    velocity,
+                    constant,
+                };
                 readings::of_reference(axis, log, &time, &reference, options.window)?
             }
         };
@@ -145,6 +169,7 @@ impl<'a> SlowLog<'a> {
             air,
             ends: read.ends,
             friction,
+            temperatures: temperatures(log),
             of: match read.by_scale {
                 true => GrowthOf::ScrewLessScale,
                 false => options.probe,
@@ -200,6 +225,7 @@ impl<'a> SlowLog<'a> {
                 air: [self.air[from], self.air[end.row]],
                 found: end.found.clone(),
                 friction: self.friction_between(from, end.row),
+                temperatures: self.temperatures_at(end.row),
             });
             from = end.row;
         }
@@ -242,16 +268,30 @@ impl<'a> SlowLog<'a> {
 
     /// The reference from one row to the next; nothing of a log of duties.
     pub(super) fn sample(&self, row: usize) -> DutySample {
-        let Source::Reference { position, velocity } = &self.source else {
+        let Source::Reference {
+            position,
+            velocity,
+            sampled,
+            ..
+        } = &self.source
+        else {
             return DutySample::default();
         };
         let step = self.time[row + 1] - self.time[row];
-        // What it has travelled is known better than its speed at either end.
-        let at = Setpoint {
-            position: 0.5 * (position[row] + position[row + 1]),
-            velocity: (position[row + 1] - position[row]) / step,
-            acceleration: (velocity[row + 1] - velocity[row]) / step,
-            ..Setpoint::default()
+        let at = match sampled {
+            // How it gets from one state to the next is not known, and inertia takes as much as it gives.
+            true => Setpoint {
+                position: position[row],
+                velocity: velocity[row],
+                ..Setpoint::default()
+            },
+            // What it has travelled is known better than its speed at either end.
+            false => Setpoint {
+                position: 0.5 * (position[row] + position[row + 1]),
+                velocity: (position[row + 1] - position[row]) / step,
+                acceleration: (velocity[row + 1] - velocity[row]) / step,
+                ..Setpoint::default()
+            },
         };
         self.losses.set_point(self.axis, step, &at)
     }
@@ -259,11 +299,17 @@ impl<'a> SlowLog<'a> {
     /// Mean power of friction, W.
     fn friction_between(&self, from: usize, to: usize) -> Option<f64> {
         let read = self.friction.as_ref()?;
-        let Source::Reference { position, .. } = &self.source else {
+        let Source::Reference {
+            position, sampled, ..
+        } = &self.source
+        else {
             return Some(read[to]).filter(|power| *power > 0.0);
         };
         if from == to {
             return None;
+        }
+        if *sampled {
+            return self.friction_of_states(read, from, to);
         }
         // Torque of inertia and loads is the reference's, which no friction takes part in.
         let power = |row: usize| {
@@ -274,6 +320,52 @@ impl<'a> SlowLog<'a> {
         let sum: f64 = (from..to).map(power).sum();
         Some(sum / (self.time[to] - self.time[from]))
     }
+
+    /// The same by the states at constant speed, where the motor has friction and loads alone to overcome: their share of
+    /// what is known of the friction in these states, times what is known of it over the whole stretch.
+    fn friction_of_states(&self, read: &[f64], from: usize, to: usize) -> Option<f64> {
+        let Source::Reference {
+            velocity, constant, ..
+        } = &self.source
+        else {
+            return None;
+        };
+        let (mut shown, mut known, mut whole, mut rows) = (0.0, 0.0, 0.0, 0);
+        for row in from..to {
+            let sample = self.sample(row);
+            let friction = sample.dry_power + sample.viscous_power;
+            whole += sample.duration * friction;
+            if constant[row] {
+                let turns = velocity[row] / self.axis.travel_per_radian();
+                shown += turns * (read[row] - sample.torque[0]);
+                known += friction;
+                rows += 1;
+            }
+        }
+        let mean = whole / (self.time[to] - self.time[from]);
+        (rows >= FEWEST_STATES && known > 0.0).then(|| mean * shown / known)
+    }
+
+    /// What sensors show at a row.
+    fn temperatures_at(&self, row: usize) -> Vec<(HeatNode, f64)> {
+        let all = self.temperatures.iter();
+        all.map(|(node, values)| (*node, values[row]))
+            .filter(|(_, value)| value.is_finite())
+            .collect()
+    }
+}
+
+/// Fewest states at constant speed of which a power is taken.
+const FEWEST_STATES: usize = 20;
+
+/// Bodies that have a channel.
+fn temperatures(log: &Log) -> Vec<(HeatNode, Vec<f64>)> {
+    let name = |node: HeatNode| match node {
+        HeatNode::Housing => "housing".to_owned(),
+        other => other.name().replace(' ', "_"),
+    };
+    let one = |node: &HeatNode| Some((*node, channel(log, &name(*node), TEMPERATURE)?));
+    HeatNode::ALL.iter().filter_map(one).collect()
 }
 
 fn source<'a>(log: &Log, options: &SlowLogOptions<'a>) -> Result<Source<'a>, HeatError> {
@@ -300,15 +392,44 @@ fn source<'a>(log: &Log, options: &SlowLogOptions<'a>) -> Result<Source<'a>, Hea
         ));
     };
     let time = log.time();
-    if let Some(row) = time.windows(2).position(|w| w[1] - w[0] > LONGEST_INTERVAL) {
+    let velocity = channel(log, "velocity_ref", SPEED);
+    let longest = match &velocity {
+        Some(_) => LONGEST_SAMPLED,
+        None => LONGEST_INTERVAL,
+    };
+    if let Some(row) = time.windows(2).position(|w| w[1] - w[0] > longest) {
         return Err(HeatError::log(
             format!("has no reference from {} to {} s", time[row], time[row + 1]),
-            "rows at most 0.2 s apart, or a channel duty_1 in the place of position_ref_m",
+            "rows at most 0.2 s apart, or 5 s with a channel velocity_ref_m_s, or a channel duty_1 in the place of position_ref_m",
         ));
     }
-    let velocity = channel(log, "velocity_ref", SPEED);
+    let sampled = time.windows(2).any(|w| w[1] - w[0] > LONGEST_INTERVAL);
     let velocity = velocity.unwrap_or_else(|| derivative(time, &position));
-    Ok(Source::Reference { position, velocity })
+    let constant = match sampled {
+        true => readings::recurring(&position, &velocity),
+        false => readings::constant(&velocity),
+    };
+    if sampled {
+        let moves = position.iter().zip(&velocity).filter(|(_, v)| **v != 0.0);
+        let mut seen: Vec<i64> = moves.map(|(x, _)| (1e5 * x).round() as i64).collect();
+        seen.sort_unstable();
+        seen.dedup();
+        if (1..FEWEST_POSITIONS).contains(&seen.len()) {
+            return Err(HeatError::log(
+                format!(
+                    "shows the moving axis in {} positions only: the motion's period is a multiple of the interval of the rows",
+                    seen.len()
+                ),
+                "rows at another interval, or a channel duty_1 in the place of position_ref_m",
+            ));
+        }
+    }
+    Ok(Source::Reference {
+        position,
+        velocity,
+        sampled,
+        constant,
+    })
 }
 
 /// Central differences.

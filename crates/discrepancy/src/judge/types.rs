@@ -274,8 +274,8 @@ pub struct Discovery {
     pub schema: u32,
     /// Name of the axis.
     pub axis: String,
-    /// How the model was compared with the logs: `closed-loop-replay`, `torque-balance`, or
-    /// `controller-estimated`, a replay with gains that were estimated from logs.
+    /// How the model was compared with the logs: `closed-loop-replay`, `torque-balance`,
+    /// `controller-estimated`, a replay with gains that were estimated from logs, or `thermal-network`, of logs of hours.
     #[serde(default = "replayed")]
     pub answer: String,
     /// Notes on the logs beside the verdict; whoever reads them adds what

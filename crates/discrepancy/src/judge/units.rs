@@ -92,7 +92,7 @@ impl ReadUnit {
 
 /// SI unit of a channel of logs; empty if its name does not say it.
 pub(super) fn channel_unit(channel: &str) -> &'static str {
-    const ENDS: [(&str, &str); 9] = [
+    const ENDS: [(&str, &str); 10] = [
         ("_rad_s", "rad/s"),
         ("_m_s", "m/s"),
         ("_n_m", "N*m"),
@@ -101,6 +101,7 @@ pub(super) fn channel_unit(channel: &str) -> &'static str {
         ("_n", "N"),
         ("_a", "A"),
         ("_v", "V"),
+        ("_w", "W"),
         ("_s", "s"),
     ];
     let end = ENDS.iter().find(|(end, _)| channel.ends_with(end));

@@ -260,6 +260,9 @@ fn answer(answer: &str) -> &'static str {
         "torque-balance" => {
             "Compared by torque balance: measured motion in, the torque that the model needs for it against the one shown."
         }
+        "thermal-network" => {
+            "Compared with the axis\u{2019} thermal network: losses of the logged motion in, growth and the friction\u{2019}s power against the logged ones."
+        }
         "controller-estimated" => {
             "Compared by closed-loop replay with a controller that was estimated from logs: the logged reference run through the simulated control and machine, the gains inside their intervals."
         }
@@ -316,7 +319,11 @@ fn next(discovery: &Discovery) -> Vec<String> {
         new
     });
     lines.extend(remedies);
-    if discovery.verdict == Verdict::Unknown && lines.is_empty() {
+    if discovery.answer == "thermal-network" {
+        if discovery.verdict == Verdict::Unknown {
+            lines.push("Log temperatures (nut_degc, front_bearing_degc, …) beside the growth, and one more duty with standstills of half an hour: heat shows by how the machine cools.".to_owned());
+        }
+    } else if discovery.verdict == Verdict::Unknown && lines.is_empty() {
         lines.extend(of_a_gap_without_name(discovery).map(str::to_owned));
     }
     lines

@@ -12,12 +12,14 @@ use discrepancy::logs::{NamedLog, admit, most_samples, needed_channels};
 use discrepancy::summary::{MeasuredError, rank, tried};
 use discrepancy::{Evidence, Settings};
 use miette::{IntoDiagnostic, Report, Result, WrapErr, miette};
-use toml_edit::{DocumentMut, Item, Value};
 
 use super::discover_files::{AXIS, DISCOVERY, NEXT, REPORT};
+use super::discover_slow;
 use super::discover_words::{Files, Found, FoundInSummary, summary_words};
 use super::motions::listed;
+use super::moved_file::moved;
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
+use crate::exit::wrong_use;
 use crate::file_set::FileSet;
 use crate::output::{Worded, note, print, ready};
 use crate::page::discovery as discovery_page;
@@ -32,11 +34,13 @@ pub struct Options {
     #[arg(long, value_name = "FILE", default_value = DEFAULT_AXIS)]
     axis: PathBuf,
     /// Logs to fit to: tables of text (CSV and the like), Parquet, MAT v5, or recordings of other
-    /// programs, 100 Hz to 20 kHz; a log in several files as their paths with + between
+    /// programs, 100 Hz to 20 kHz; a log in several files as their paths with + between. Or logs of
+    /// hours, slower than 10 Hz: growth and friction that falls with warmth are looked for in them
     #[arg(long, value_name = "LOG", num_args = 1.., required_unless_present = "summary")]
     fit: Vec<PathBuf>,
-    /// Logs of other motion, to check on; never fitted to
-    #[arg(long, value_name = "LOG", num_args = 1.., required_unless_present = "summary")]
+    /// Logs of other motion, to check on; never fitted to. Logs of hours may be without: then the last
+    /// quarter of each is held out
+    #[arg(long, value_name = "LOG", num_args = 1..)]
     check: Vec<PathBuf>,
     /// Logs for the reported figures, used for no choice. Without them the figures come from the
     /// last check log, or from the last part of a single one if it can be cut
@@ -64,6 +68,8 @@ pub struct Options {
     /// Threads, 0 for all cores; results do not depend on it
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
+    #[command(flatten)]
+    slow: discover_slow::Options,
 }
 
 /// Runs the command.
@@ -79,6 +85,22 @@ pub fn command(options: &Options) -> Result<()> {
     let out = options.out.clone().unwrap_or_else(default);
     match &options.summary {
         Some(table) => from_summary(options, &machine, table, &out),
+        None if discover_slow::asked(&machine, &options.fit) => {
+            let given = discover_slow::Given {
+                machine: &machine,
+                file: &options.axis,
+                fit: &options.fit,
+                check: &options.check,
+                others: [
+                    ("--test", !options.test.is_empty()),
+                    ("--accept", !options.accept.is_empty()),
+                    ("--reject", !options.reject.is_empty()),
+                    ("--balance", options.balance),
+                ],
+                out: &out,
+            };
+            discover_slow::command(&given, &options.slow)
+        }
         None => from_logs(options, &machine, &out),
     }
 }
@@ -90,6 +112,11 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
         ..Settings::default()
     };
     settings.check(machine).into_diagnostic()?;
+    if options.check.is_empty() {
+        return Err(wrong_use(
+            "--check is missing; valid: one log or more of other motion than that of --fit, on which the search is judged",
+        ));
+    }
     let mut notes = Vec::new();
     let mut logs = |paths: &[PathBuf]| read_all(paths, machine, &mut notes);
     let (fit, check) = (logs(&options.fit)?, logs(&options.check)?);
@@ -145,41 +172,6 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
 
 const RANKING: &str = "ranking.json";
 const RANKING_REPORT: &str = "ranking.html";
-
-/// The text of the axis file `from` as it must be in `folder`: it names files relative
-/// to its own.
-pub(super) fn moved(text: &str, from: &Path, folder: &Path) -> Result<String> {
-    let whole = |path: &Path| {
-        path.canonicalize()
-            .into_diagnostic()
-            .wrap_err_with(|| format!("cannot find {}", path.display()))
-    };
-    let mut document: DocumentMut = text.parse().into_diagnostic()?;
-    let Some(experiment) = document
-        .get_mut("experiment")
-        .and_then(Item::as_table_like_mut)
-    else {
-        return Ok(text.to_owned());
-    };
-    let from = whole(&from.with_file_name("."))?;
-    let folder = whole(folder)?;
-    for key in ["machine", "paper_tables"] {
-        let Some(value) = experiment.get_mut(key).and_then(Item::as_value_mut) else {
-            continue;
-        };
-        let Some(named) = value.as_str().map(Path::new).filter(|p| p.is_relative()) else {
-            continue;
-        };
-        let file = from.join(named);
-        let file = file.canonicalize().unwrap_or(file);
-        if let Some(path) = pathdiff::diff_paths(file, &folder) {
-            let decor = value.decor().clone();
-            *value = Value::from(path.display().to_string());
-            *value.decor_mut() = decor;
-        }
-    }
-    Ok(document.to_string())
-}
 
 /// Reads logs and looks at them; what was done to any goes to `notes`.
 pub fn read_all(

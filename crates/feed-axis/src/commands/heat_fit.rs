@@ -9,8 +9,8 @@ use axis_sim::{Axis, SixDigits};
 use miette::{IntoDiagnostic, Result};
 use serde::Serialize;
 
-use super::discover::moved;
 use super::heat_slow::{Options, of_log, slow_log};
+use super::moved_file::moved;
 use crate::context::read_text;
 use crate::output::{print, ready, write_whole};
 use crate::program;

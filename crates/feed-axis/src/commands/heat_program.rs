@@ -1,7 +1,9 @@
 //! The program that an axis repeats.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use axis_pipeline::strategies::SharedMotion;
 use axis_sim::{Axis, SixDigits};
 use miette::{Result, WrapErr};
 use trajectories::{Motion, Program};
@@ -26,6 +28,12 @@ pub(super) fn repeated(file: &Path, axis: &Axis) -> Result<Program> {
     }
     inside(&program, axis).wrap_err("--program")?;
     Ok(program)
+}
+
+/// Programs that the duties of slow logs count from 1.
+pub(super) fn shared_programs(axis: &Axis, files: &[PathBuf]) -> Result<Vec<SharedMotion>> {
+    let read = |file: &PathBuf| Ok(Arc::new(repeated(file, axis)?) as SharedMotion);
+    files.iter().map(read).collect()
 }
 
 /// A program that leaves the stroke would heat places that the nut cannot be at.

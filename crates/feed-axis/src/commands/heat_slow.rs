@@ -63,7 +63,7 @@ pub(super) struct Options {
 
 /// What a probe reads growth against.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum ProbeAgainst {
+pub(super) enum ProbeAgainst {
     /// The bed at the front bearing
     Bearing,
     /// A gauge that is clamped to the bed at the same position
@@ -72,11 +72,31 @@ enum ProbeAgainst {
 
 /// What readings of a probe count from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum ProbeZero {
+pub(super) enum ProbeZero {
     /// The beginning of the log
     Begin,
     /// The first reading at each position
     First,
+}
+
+impl ProbeAgainst {
+    /// What a reading shows.
+    pub(super) fn of(self) -> GrowthOf {
+        match self {
+            Self::Bearing => GrowthOf::Screw,
+            Self::Bed => GrowthOf::ScrewLessBed,
+        }
+    }
+}
+
+impl ProbeZero {
+    /// What a reading counts from.
+    pub(super) fn of(self) -> GrowthZero {
+        match self {
+            Self::Begin => GrowthZero::Begin,
+            Self::First => GrowthZero::FirstAtPlace,
+        }
+    }
 }
 
 impl Options {
@@ -88,10 +108,9 @@ impl Options {
     /// The duties of the logs: those named, or `own` if there is one.
     pub(super) fn programs(&self, axis: &Axis, own: Option<Program>) -> Result<Vec<SharedMotion>> {
         let shared = |program| Arc::new(program) as SharedMotion;
-        let read = |file: &PathBuf| super::heat_program::repeated(file, axis).map(shared);
         match self.duties.is_empty() {
             true => Ok(own.into_iter().map(shared).collect()),
-            false => self.duties.iter().map(read).collect(),
+            false => super::heat_program::shared_programs(axis, &self.duties),
         }
     }
 
@@ -100,14 +119,8 @@ impl Options {
         SlowLogOptions {
             duties,
             air,
-            probe: match self.probe_against {
-                ProbeAgainst::Bearing => GrowthOf::Screw,
-                ProbeAgainst::Bed => GrowthOf::ScrewLessBed,
-            },
-            zero: match self.probe_zero {
-                ProbeZero::Begin => GrowthZero::Begin,
-                ProbeZero::First => GrowthZero::FirstAtPlace,
-            },
+            probe: self.probe_against.of(),
+            zero: self.probe_zero.of(),
             ..SlowLogOptions::default()
         }
     }

@@ -12,7 +12,8 @@ use miette::{IntoDiagnostic, Result, miette};
 use serde::Serialize;
 
 use super::control_table::{limits, spelling, tolerance, with_control};
-use super::discover::{moved, read_all};
+use super::discover::read_all;
+use super::moved_file::moved;
 use crate::context::{read_axis, read_text};
 use crate::exit::wrong_use;
 use crate::out_file;

@@ -14,9 +14,9 @@ use serde::Serialize;
 
 use super::analyse::Ranges;
 use super::control_table::with_tuned;
-use super::discover::moved;
 use super::export::drive::entered;
 use super::frf;
+use super::moved_file::moved;
 use crate::context::{DEFAULT_AXIS, axis_with, read_text};
 use crate::out_file;
 use crate::output::{Worded, print, ready, write_whole};

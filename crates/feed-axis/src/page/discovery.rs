@@ -59,6 +59,9 @@ fn lead(discovery: &Discovery) -> &'static str {
         "torque-balance" => {
             "The torque that the model needs for the logged motion, compared with the logged torque: the residual, and which effect explains it."
         }
+        "thermal-network" => {
+            "Growth and the friction's power in logs of hours, compared with a machine without heat and with the states of the axis' thermal network."
+        }
         _ => {
             "Logs replayed through the simulated closed loop: the residual, and which effect explains it."
         }

@@ -8,7 +8,7 @@
 //! | G90, G91 | positions absolute (at first), or from the last position |
 //! | G90.1, G91.1 | centres absolute, or from the arc's begin (at first) |
 //! | X Y Z; I J K; R | position; centre; radius, negative for the longer of the two arcs |
-//! | G61; G64 P | corners stay (at first); blends of lines within P of each corner, for lines of one feed ([`PathBlending`](crate::PathBlending)) |
+//! | G61; G64 P | corners stay (at first); blends within P of each corner of lines and arcs of one feed ([`PathBlending`](crate::PathBlending)) |
 //! | F | feed per minute, kept until the next (G94, which is accepted) |
 //! | N, comments, % | without effect |
 //! | M2, M30 | end |
