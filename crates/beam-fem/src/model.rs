@@ -72,7 +72,7 @@ impl BeamModel {
     }
 
     /// Adds a node off the shaft, which does not spin: a pedestal or a casing. Its
-    /// degrees of freedom need mass ([`BeamModel::add_mass`]) or [`BeamModel::hold`]. Returns
+    /// degrees of freedom need mass ([`BeamModel::add_mass`]) or [`BeamModel::fix`]. Returns
     /// its number.
     pub fn add_node(&mut self) -> usize {
         self.nodes += 1;

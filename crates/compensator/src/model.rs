@@ -17,7 +17,7 @@ use lugre::{Exponential, LuGre};
 use crate::error::{self, require, within};
 use crate::{CompensatorError, SignalPath};
 
-/// Positions at which [`Along`] holds its values.
+/// Positions at which [`StrokeSections`] holds its values.
 pub const SECTIONS: usize = 33;
 
 /// What of an axis depends on the load's position.
