@@ -15,7 +15,7 @@ use crate::rival_drift::{self, RivalDrift};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
-pub struct Estimated {
+pub struct HeatEstimate {
     /// The estimate.
     pub value: f64,
     /// Its interval.
@@ -71,7 +71,7 @@ pub struct HeatEffect {
     pub is_a_drift: bool,
     /// Growth at the reading with the greatest one, m; share of the friction's power that is lost at the reading with the
     /// greatest loss.
-    pub size: Estimated,
+    pub size: HeatEstimate,
     /// Time (s) and, of growth, position (m) of that reading.
     pub at: [f64; 2],
     /// The least such size that these logs would name.
@@ -103,7 +103,7 @@ pub struct HeatExplained {
     /// Friction that falls with warmth; none if the logs do not show the friction's power.
     pub warming: Option<HeatEffect>,
     /// Fall of viscous and of dry friction and rise of the preload, 1/K; none without readings of the power.
-    pub falls: Option<[Estimated; 3]>,
+    pub falls: Option<[HeatEstimate; 3]>,
     /// The numbers with what is named.
     pub parameters: ThermalParameters,
     /// Dry and viscous friction at the reference temperature, as multiples of the file's.
@@ -240,7 +240,7 @@ fn judged(
     fits: &Fits,
     kind: usize,
     rivals: Vec<RivalDrift>,
-    found: (Estimated, [f64; 2], f64),
+    found: (HeatEstimate, [f64; 2], f64),
 ) -> HeatEffect {
     let without = [&fits.without_growth, &fits.without_warming][kind];
     let of = |fitted: &Fitted| squares(problem.logs, fitted, fits.deviations);
@@ -277,9 +277,9 @@ fn judged(
     }
 }
 
-fn interval(value: f64, deviation: f64, freedom: f64) -> Estimated {
+fn interval(value: f64, deviation: f64, freedom: f64) -> HeatEstimate {
     let half = within(freedom) * deviation;
-    Estimated {
+    HeatEstimate {
         value,
         interval: [value - half, value + half],
     }
@@ -353,7 +353,7 @@ fn warming(problem: &Problem<'_>, fits: &Fits) -> Result<HeatEffect, ThermalErro
     Ok(judged(problem, fits, 1, rivals, (size, [time, 0.0], limit)))
 }
 
-fn falls(problem: &Problem<'_>, fits: &Fits) -> Result<[Estimated; 3], ThermalError> {
+fn falls(problem: &Problem<'_>, fits: &Fits) -> Result<[HeatEstimate; 3], ThermalError> {
     let (covariance, determined) = problem.covariance(BOTH, &fits.both, fits.deviations)?;
     let freedom = problem.freedom(determined)[1];
     let values = fits.both.falls();

@@ -87,7 +87,7 @@ mod work;
 
 pub use duty::{Duty, DutySample};
 pub use error::ThermalError;
-pub use explained::{Estimated, HeatEffect, HeatExplained, HeatGap, HeatResidual};
+pub use explained::{HeatEffect, HeatEstimate, HeatExplained, HeatGap, HeatResidual};
 pub use friction::{FrictionLaws, TemperatureLaw};
 pub use growth::{Growth, ThermalForce};
 pub use growth_log::{

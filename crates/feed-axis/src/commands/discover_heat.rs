@@ -2,7 +2,7 @@
 
 use axis_sim::effects::Effect;
 use axis_sim::{Axis, SixDigits};
-use axis_thermal::{DriftOver, Estimated, HeatEffect, HeatExplained, HeatGap, HeatResidual};
+use axis_thermal::{DriftOver, HeatEffect, HeatEstimate, HeatExplained, HeatGap, HeatResidual};
 use discrepancy::{
     Assessment, ChannelGap, Confidence, Cost, Curve, Discovered, Discovery, EffectFound,
     FigureLogs, Gap, Gaps, Level, Likeness, Overlay, ParameterFound, Recalibrated, Remedy,
@@ -115,7 +115,7 @@ fn verdict(both: &[(&Said, &HeatEffect)]) -> Verdict {
     }
 }
 
-fn parameter(name: &str, unit: &str, of: &Estimated) -> ParameterFound {
+fn parameter(name: &str, unit: &str, of: &HeatEstimate) -> ParameterFound {
     ParameterFound {
         name: name.to_owned(),
         value: of.value,
