@@ -2,6 +2,7 @@
 
 mod drive_terms;
 mod heat;
+mod heat_sampled;
 mod learning;
 mod moves;
 mod robustness;

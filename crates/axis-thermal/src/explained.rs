@@ -1,6 +1,7 @@
 //! What growth and warming friction explain of logs of hours.
 
 use nalgebra::DVector;
+use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::error::ThermalError;
 use crate::growth_log::{FollowedFriction, FollowedGrowth, FollowedLog, usual_duration};
@@ -116,13 +117,9 @@ pub struct HeatExplained {
 const DECIDES: [f64; 2] = [25.0, 9.0];
 /// Share of its gap that an effect takes away.
 const MATERIAL: f64 = 0.5;
-/// 95 % of a normal distribution lie within so many standard deviations.
-const WITHIN: f64 = 1.96;
-
-/// The same of Student's t with so many degrees of freedom, to the first order of their inverse (Abramowitz and Stegun,
-/// 26.7.5): z + (z³ + z)/(4 ν).
+/// Half of a 95 % interval in standard deviations that have so many degrees of freedom.
 fn within(freedom: f64) -> f64 {
-    WITHIN + (WITHIN.powi(3) + WITHIN) / (4.0 * freedom)
+    StudentsT::new(0.0, 1.0, freedom).map_or(f64::INFINITY, |t| t.inverse_cdf(0.975))
 }
 
 /// Sums of squares of growth and of friction's power: of what is fitted, of what is not.

@@ -63,7 +63,7 @@ impl<const N: usize> Rows<N> {
         }
     }
 
-    /// Sums of squares of what is left: fitted, not fitted.
+    /// Sums of squares of the residual: over the rows that are fitted, over the held-out rows.
     fn left(&self) -> [f64; 2] {
         let fitted: Vec<usize> = (0..self.asked.len()).filter(|i| self.fitted[*i]).collect();
         let matrix = DMatrix::from_fn(fitted.len(), N, |i, j| self.columns[fitted[i]][j]);

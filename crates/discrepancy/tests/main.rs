@@ -7,5 +7,6 @@ mod logs;
 mod needs;
 mod nothing_missing;
 mod prediction;
+mod sensor_steps;
 mod settings;
 mod starts;

@@ -472,4 +472,30 @@ fn discover_says_what_a_log_of_hours_needs() {
     );
     let message = refuse(&["discover", "--axis", SCREW, "--fit", log]);
     assert!(message.contains("has duty 1"), "{message}");
+    let folder = tempfile::tempdir().unwrap();
+    let (motor, moved) = (
+        "data/axes/linear-motor.toml",
+        folder.path().join("moved.csv").display().to_string(),
+    );
+    let out = folder.path().display().to_string();
+    let simulated = [
+        "--axis",
+        motor,
+        "--trajectory",
+        "1",
+        "--log",
+        &moved,
+        "--out",
+        &out,
+    ];
+    succeed(&[&["simulate"], &simulated[..]].concat());
+    let of_motion = [
+        "discover", "--axis", motor, "--fit", &moved, "--check", &moved,
+    ];
+    let duties = ["--duties", "data/heat/duty-1.toml", "--out", &out];
+    let message = refuse(&[&of_motion[..], &duties].concat());
+    assert!(
+        message.contains("--duties is for logs of hours"),
+        "{message}"
+    );
 }

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use trajectories::{Axes, AxisTask, Motion, Setpoint, Transfer};
 
-use crate::transfer::{Case, cases, check_motion, limits, state};
+use crate::transfer_cases::{Case, cases, check_motion, limits, state};
 
 fn task(case: &Case) -> AxisTask {
     AxisTask {

@@ -8,4 +8,5 @@ mod program;
 mod scurve;
 mod single_precision;
 mod transfer;
+mod transfer_cases;
 mod velocity_change;

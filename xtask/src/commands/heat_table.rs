@@ -16,8 +16,8 @@ const GOALS: [(&str, f64); 4] = [
 /// What sets the limits.
 const NOTES: &str = "\n## Notes\n\
      - \"The machine's own friction\": the model of the strategy has the friction that the machine has at that time. It is what a schedule without error would leave.\n\
-     - The machine's friction in the loop is the mean over the stroke: dry friction is up to 0.7 % greater in the middle, where the screw is warmest.\n\
-     - The plan's error follows the dry friction: after 60 min the schedule without slow strokes has it 1.9 % too low, that with them 0.7 %. At 200 mm/s 15 % of the power are dry, so that 1.9 % of the dry friction are 0.3 % of the power, less than its noise: strokes at 20 mm/s, whose power is mostly dry, show it.\n";
+     - The machine's friction in the loop is the mean over the stroke: dry friction is greater in the middle, where the screw is warmest.\n\
+     - The plan's error follows the dry friction, which strokes at 200 mm/s hardly show: most of their power is viscous. The power of strokes at 20 mm/s is mostly dry.\n";
 
 /// The page.
 pub fn page(found: &Found) -> String {

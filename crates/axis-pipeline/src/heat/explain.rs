@@ -4,7 +4,7 @@ use axis_log::Log;
 use axis_sim::Axis;
 use axis_thermal::{HeatExplained, HeldLog, ThermalModel};
 
-use super::identify::{SEGMENTS, fitted_part};
+use super::identify::{fitted_part, for_fit, with_segments_of};
 use super::{HeatError, SlowLog};
 
 /// Share of the logs that is held out if there is no log to check on.
@@ -35,12 +35,7 @@ pub fn explain(
     fit: &[SlowLog<'_>],
     check: &[SlowLog<'_>],
 ) -> Result<HeatExplained, HeatError> {
-    let whole = axis.thermal_parameters();
-    let mut assumed = whole.clone();
-    let Some(screw) = &mut assumed.screw else {
-        return Err(HeatError::NoScrew);
-    };
-    screw.segments = screw.segments.min(SEGMENTS);
+    let assumed = for_fit(axis)?;
     let model = ThermalModel::new(assumed.clone())?;
     let fitted = fit.iter().map(|log| {
         let log = log.stretches(&model);
@@ -56,8 +51,6 @@ pub fn explain(
     });
     let logs: Vec<HeldLog> = fitted.chain(checked).collect();
     let mut found = assumed.explain(&logs)?;
-    if let (Some(to), Some(from)) = (&mut found.parameters.screw, whole.screw) {
-        to.segments = from.segments;
-    }
+    with_segments_of(axis, &mut found.parameters);
     Ok(found)
 }

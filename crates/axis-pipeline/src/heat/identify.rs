@@ -1,12 +1,15 @@
 //! A thermal model fitted to slow logs, checked on the part that was held out.
 
 use axis_sim::Axis;
-use axis_thermal::{FittedGrowth, FollowedLog, GrowthFit, GrowthLog, ThermalModel, ThermalUnknown};
+use axis_thermal::{
+    FittedGrowth, FollowedLog, GrowthFit, GrowthLog, ThermalModel, ThermalParameters,
+    ThermalUnknown,
+};
 
 use super::{HeatError, SlowLog};
 
 /// Most segments of the screw while a model is fitted: growth of more differs by less than what is fitted.
-pub(super) const SEGMENTS: usize = 30;
+const SEGMENTS: usize = 30;
 
 /// Errors on readings that were not fitted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -53,12 +56,7 @@ pub fn fit(axis: &Axis, logs: &[SlowLog<'_>], held_out: f64) -> Result<HeatFit, 
             valid: "from 0 to 0.9",
         });
     }
-    let whole = axis.thermal_parameters();
-    let mut assumed = whole.clone();
-    let Some(screw) = &mut assumed.screw else {
-        return Err(HeatError::NoScrew);
-    };
-    screw.segments = screw.segments.min(SEGMENTS);
+    let assumed = for_fit(axis)?;
     let model = ThermalModel::new(assumed.clone())?;
     let all: Vec<GrowthLog> = logs.iter().map(|log| log.stretches(&model)).collect();
     let kept: Vec<usize> = all.iter().map(|log| fitted_part(log, held_out)).collect();
@@ -75,9 +73,7 @@ pub fn fit(axis: &Axis, logs: &[SlowLog<'_>], held_out: f64) -> Result<HeatFit, 
     };
     let before = errors(&model)?;
     let after = errors(&ThermalModel::new(fitted.parameters.clone())?)?;
-    if let (Some(to), Some(from)) = (&mut fitted.parameters.screw, whole.screw) {
-        to.segments = from.segments;
-    }
+    with_segments_of(axis, &mut fitted.parameters);
     let stretches = || parts.iter().flat_map(|log| &log.stretches);
     Ok(HeatFit {
         readings: parts.iter().map(GrowthLog::comparisons).sum(),
@@ -87,6 +83,24 @@ pub fn fit(axis: &Axis, logs: &[SlowLog<'_>], held_out: f64) -> Result<HeatFit, 
         before,
         after,
     })
+}
+
+/// The thermal numbers of an axis with as few segments of its screw as a fit needs.
+///
+/// # Errors
+/// [`HeatError::NoScrew`] if it has none.
+pub(super) fn for_fit(axis: &Axis) -> Result<ThermalParameters, HeatError> {
+    let mut fewer = axis.thermal_parameters();
+    let screw = fewer.screw.as_mut().ok_or(HeatError::NoScrew)?;
+    screw.segments = screw.segments.min(SEGMENTS);
+    Ok(fewer)
+}
+
+/// Gives fitted numbers the segments that the axis has.
+pub(super) fn with_segments_of(axis: &Axis, fitted: &mut ThermalParameters) {
+    if let (Some(to), Some(from)) = (&mut fitted.screw, axis.thermal_parameters().screw) {
+        to.segments = from.segments;
+    }
 }
 
 /// How many stretches are fitted.

@@ -13,7 +13,7 @@ const INEXACT: f64 = 3e-4;
 /// Share of what a channel shows, of a position of the tracking error, up to which a residual in which nothing is named is no
 /// lack of the model: no drive measures its current, and no motor makes torque of it, more linearly than to about as much. Laws
 /// hidden in seed 14 of `docs/laws/run` leave 3.3e-3 and more, clean machines of another friction than the model's 1e-3.
-const IMMATERIAL: f64 = 2e-3;
+pub(crate) const IMMATERIAL: f64 = 2e-3;
 
 impl LogSet {
     /// What its channels show of the dynamics, per log and channel.

@@ -15,6 +15,7 @@ mod ticks;
 use axis_sim::effects::ActiveEffect;
 use axis_sim::{Axis, Balance, Probe, Replay, ReplayError, Trace};
 
+pub(crate) use self::inexact::IMMATERIAL;
 pub(crate) use self::set::ANGLE;
 pub use self::set::{LogSet, Prepared, Rest};
 pub use self::state::State;

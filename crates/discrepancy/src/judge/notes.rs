@@ -7,7 +7,7 @@ use axis_sim::{Axis, ReplayError, Trace};
 use super::compared::Compared;
 use super::remainder::Remainder;
 use super::units::{ReadUnit, channel_unit};
-use crate::answers::{LogSet, Prepared, State};
+use crate::answers::{IMMATERIAL, LogSet, Prepared, State};
 use crate::name::gap::Gap;
 use crate::name::search::Found;
 use crate::noise::Excess;
@@ -30,6 +30,9 @@ pub(super) fn all_notes(
     let above = remainder.more_than_noise;
     all.extend(above.map(|(log, times)| above_noise_note(&found.fit_logs, log, times)));
     all.extend(remainder.coloured.as_ref().map(Excess::note));
+    if remainder.is_immaterial && !remainder.gap.is_at_floor() {
+        all.push(immaterial_note(compared));
+    }
     if remainder.is_slow_of_loop {
         all.push(slow_of_loop_note(&remainder.gap));
     }
@@ -134,6 +137,17 @@ fn slow_of_loop_note(check: &Gap) -> String {
     let times = times.fold(0.0, f64::max);
     format!(
         "the residual is {times:.1} times that lower bound, and no curve over the motion that is fitted on some logs predicts others: it is taken for sensor noise that passed through the controller; a replay with the controller's gains would show more"
+    )
+}
+
+/// What must be known of a residual that is above its noise, and too small to be a lack of the model.
+fn immaterial_note(compared: &Compared<'_>) -> String {
+    let channels = compared.left.gap.channels.iter();
+    let above = channels.max_by(|a, b| (a.after / a.floor).total_cmp(&(b.after / b.floor)));
+    let (channel, times) = above.map_or(("", 0.0), |c| (c.channel.as_str(), c.after / c.floor));
+    format!(
+        "{channel}: the residual is {times:.1} times its noise, but within {} % of what each channel shows (of a position: of the tracking error); no current sensor is more linear, so it counts as agreement",
+        100.0 * IMMATERIAL
     )
 }
 

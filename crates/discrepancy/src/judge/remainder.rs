@@ -1,12 +1,12 @@
 //! What the residual is: noise, or something without a name; and the verdict that follows.
 
-use axis_sim::ReplayError;
+use axis_sim::{Axis, ReplayError};
 
 use super::compared::Compared;
 use super::named::NamedEffects;
 use super::types::Verdict;
 use super::unknown::{Unknown, in_frequency, lack};
-use crate::answers::Rest;
+use crate::answers::{LogSet, Rest};
 use crate::estimate::fit::Fitter;
 use crate::name::gap::{Gap, is_more_than_noise, sizes};
 use crate::name::search::{MATERIAL, Refused};
@@ -32,6 +32,8 @@ pub(super) struct Remainder<'a> {
     pub(super) is_slow_of_loop: bool,
     /// The fitted log in which there is more than noise though nothing was named, and how many times its floor.
     pub(super) more_than_noise: Option<(usize, f64)>,
+    /// Whether nothing is named, and what remains is small beside what each channel shows.
+    pub(super) is_immaterial: bool,
     /// What was refused and is not of noise.
     pub(super) refused: Option<&'a Refused>,
     /// Whether it is more than noise and than small change.
@@ -53,15 +55,15 @@ impl<'a> Remainder<'a> {
         let gap = compared.left.gap.clone();
         let largest = found.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
         let is_nearly_none = gap.reduction >= NEARLY_ALL && !is_bare;
+        let fitted = (&found.fit_logs, &compared.fit_gap);
+        let mut logs = [(set, &compared.left.gap), fitted].into_iter();
+        let is_immaterial = is_bare && logs.all(|(set, gap)| is_immaterial(machine, set, gap));
         // That nothing is missing has to hold of every log, of those that were fitted as well: there is no more noise
         // in them than the check logs show, but for what differs from log to log. Where there is, nothing is taken for noise.
         let more_than_noise = compared
             .fit_above
             .filter(|(_, times)| is_more_than_noise(*times, compared.above))
-            .filter(|_| is_bare && named.own_form.is_none());
-        let channels = gap.channels.iter().enumerate();
-        let mut small = channels.map(|(c, gap)| gap.after <= set.immaterial(machine, c));
-        let is_immaterial = is_bare && small.all(|is_small| is_small);
+            .filter(|_| is_bare && named.own_form.is_none() && !is_immaterial);
         let lack = match is_immaterial {
             true => None,
             false => lack(machine, found, MATERIAL * largest)?,
@@ -87,8 +89,8 @@ impl<'a> Remainder<'a> {
         let unknown = lack.or_else(|| following.map(in_frequency));
         let as_coloured = compared.left.loop_noise.is_some() && unknown.is_none();
         let is_noise = gap.is_at_floor() || coloured.is_some() || is_slow_of_loop || as_coloured;
-        let is_significant = !is_immaterial
-            && (!(is_noise || is_nearly_none) || unknown.is_some() || more_than_noise.is_some());
+        let is_small = is_noise || is_nearly_none || is_immaterial;
+        let is_significant = !is_small || unknown.is_some() || more_than_noise.is_some();
         // What takes away little of a residual that is noise was fitted to noise.
         let is_of_noise = |refused: &&Refused| {
             is_immaterial || as_coloured || is_slow_of_loop && refused.effects.is_empty()
@@ -102,6 +104,7 @@ impl<'a> Remainder<'a> {
             coloured,
             is_slow_of_loop,
             more_than_noise,
+            is_immaterial,
             refused,
             is_significant,
         })
@@ -122,6 +125,12 @@ impl<'a> Remainder<'a> {
             (false, _) => Verdict::PartlyExplained,
         }
     }
+}
+
+/// Whether the residual of logs is small beside what each of their channels shows.
+fn is_immaterial(machine: &Axis, set: &LogSet, gap: &Gap) -> bool {
+    let mut channels = gap.channels.iter().enumerate();
+    channels.all(|(c, gap)| gap.after <= set.immaterial(machine, c))
 }
 
 /// The gap, were its residual taken for noise although that is above its floor: not where something else is known of

@@ -55,6 +55,9 @@ pub(super) fn sentence(
         Verdict::OtherForm => format!(
             "No effect is missing, but the axis\u{2019} own friction has another form than the model\u{2019}s. With it, {gone}.{forms}"
         ),
+        Verdict::NothingMissing if !check.is_at_floor() => format!(
+            "Nothing is missing: what remains is taken for noise or is immaterial, as the notes say, with known parameters inside their tolerance.{forms}"
+        ),
         Verdict::NothingMissing => format!(
             "Nothing is missing: the model and the logs agree to the noise, with known parameters inside their tolerance.{forms}"
         ),

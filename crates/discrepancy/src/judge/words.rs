@@ -45,6 +45,9 @@ fn missing(discovery: &Discovery) -> Vec<String> {
         Verdict::OtherForm => Some(
             "No effect, but the axis\u{2019} own friction has another form than the model\u{2019}s.",
         ),
+        Verdict::NothingMissing if !discovery.gap.check.is_at_floor() => Some(
+            "Nothing: what remains is taken for noise or is immaterial, as the notes say, with the known parameters inside their tolerances.",
+        ),
         Verdict::NothingMissing => Some(
             "Nothing: model and logs agree to the noise, with the known parameters inside their tolerances.",
         ),

@@ -101,7 +101,10 @@ pub fn command(options: &Options) -> Result<()> {
             };
             discover_slow::command(&given, &options.slow)
         }
-        None => from_logs(options, &machine, &out),
+        None => {
+            discover_slow::refuse(&options.slow)?;
+            from_logs(options, &machine, &out)
+        }
     }
 }
 
