@@ -1,7 +1,9 @@
 //! One test program: what the search may be asked, and what it may not conclude.
 
+mod bench;
 mod controller;
 mod fit;
+mod law_error;
 mod logs;
 #[path = "../../../tests/needs.rs"]
 mod needs;

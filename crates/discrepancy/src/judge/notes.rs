@@ -9,7 +9,7 @@ use super::remainder::Remainder;
 use super::units::{ReadUnit, channel_unit};
 use crate::answers::{IMMATERIAL, LogSet, Prepared, State};
 use crate::name::gap::Gap;
-use crate::name::search::Found;
+use crate::name::search::{Found, LAW_ERROR};
 use crate::noise::Excess;
 
 /// All notes to a result.
@@ -30,6 +30,7 @@ pub(super) fn all_notes(
     let above = remainder.more_than_noise;
     all.extend(above.map(|(log, times)| above_noise_note(&found.fit_logs, log, times)));
     all.extend(remainder.coloured.as_ref().map(Excess::note));
+    all.extend(found.within_error.iter().map(law_error_note));
     if remainder.is_immaterial && !remainder.gap.is_at_floor() {
         all.push(immaterial_note(compared));
     }
@@ -137,6 +138,15 @@ fn slow_of_loop_note(check: &Gap) -> String {
     let times = times.fold(0.0, f64::max);
     format!(
         "the residual is {times:.1} times that lower bound, and no curve over the motion that is fitted on some logs predicts others: it is taken for sensor noise that passed through the controller; a replay with the controller's gains would show more"
+    )
+}
+
+/// What stood beside a larger effect.
+fn law_error_note((name, share): &(&'static str, f64)) -> String {
+    format!(
+        "{name} would explain more, but does {:.1} % of what the other effects do at the same frequencies, and a law of the library may be off by {:.0} % of that: not named",
+        100.0 * share,
+        100.0 * LAW_ERROR
     )
 }
 

@@ -35,6 +35,8 @@ pub(super) struct Short {
     gain: f64,
     /// The term's number, and its standard deviation.
     number: [f64; 2],
+    /// The number of what it is taken with, if it is.
+    beside: Option<f64>,
     /// The residual with it on the check logs.
     left: answers::Rest,
 }
@@ -78,14 +80,18 @@ impl Short {
             .max_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
         let (term, solved) = most?;
         let set = checker.set;
-        let (number, traces) = match term.as_effect(&motions) {
+        let (number, beside, traces) = match term.as_effect(&motions) {
             Some(active) => {
                 let begun = Term::sized(active, solved.values.as_slice());
                 let (fit, deviation) = fitted(fitter, found, begun).ok()?;
                 let last = &fit.state.effects[fit.state.effects.len() - 1];
                 let [factor, per_size] = Term::factor(last);
                 let traces = set.simulate(machine, &fit.state).ok()?;
-                ([factor, per_size * deviation], traces)
+                (
+                    [factor, per_size * deviation],
+                    Term::factor_beside(last),
+                    traces,
+                )
             }
             None => {
                 let motions = courses(machine, set, &check.traces);
@@ -93,7 +99,8 @@ impl Short {
                 let traces = set
                     .simulate_with(machine, &check.state, Some(&probes))
                     .ok()?;
-                ([solved.values[0], solved.deviations[0]], traces)
+                let beside = solved.values.get(1).copied();
+                ([solved.values[0], solved.deviations[0]], beside, traces)
             }
         };
         Some(Self {
@@ -102,6 +109,7 @@ impl Short {
             middle,
             gain: solved.gain,
             number,
+            beside,
             left: set.rest(&traces),
         })
     }
@@ -129,7 +137,12 @@ impl Short {
 
     /// In words, for a load that moves like this.
     pub(super) fn formula(&self, freedom: Freedom) -> String {
-        let Term { words, unit, .. } = self.term;
+        let Term {
+            words,
+            unit,
+            beside,
+            ..
+        } = self.term;
         let about = match has_place(words) {
             true => format!(", x from {:.3} {}", self.middle, turned("m", freedom)),
             false => String::new(),
@@ -139,7 +152,14 @@ impl Short {
             Place::Offset => "displacement",
         };
         let number = said(self.number, turned(unit, freedom));
-        format!("{what} = c · {words}{about}, c = {number} (empirical)")
+        let (mut law, mut numbers) = (format!("c · {words}"), format!("c = {number}"));
+        if let (Some(with), Some(factor)) = (beside, self.beside) {
+            let times = if with.words.is_empty() { "" } else { " · " };
+            let factor = said_alone(factor, turned(with.unit, freedom));
+            law.push_str(&format!(" + b{times}{}", with.words));
+            numbers.push_str(&format!(", b = {factor}"));
+        }
+        format!("{what} = {law}{about}, {numbers} (empirical)")
     }
 }
 
@@ -161,6 +181,18 @@ fn said([number, deviation]: [f64; 2], unit: String) -> String {
         name: unit,
     };
     unit.said_within(number, interval)
+}
+
+/// A number without an interval.
+fn said_alone(number: f64, unit: String) -> String {
+    if number.abs() >= 1e6 || number != 0.0 && number.abs() < 1e-3 {
+        return format!("{number:.3e} {unit}");
+    }
+    let unit = ReadUnit {
+        factor: 1.0,
+        name: unit,
+    };
+    unit.said(number)
 }
 
 /// Rounds of a fit with a term.

@@ -25,7 +25,16 @@ pub struct Term {
     pub unit: &'static str,
     value: Value,
     /// What it is taken with: a zero of its own, say.
-    beside: Option<Value>,
+    pub beside: Option<Beside>,
+}
+
+/// What a term is taken with.
+pub struct Beside {
+    /// Its formula; empty for a constant.
+    pub words: &'static str,
+    /// Unit of its number.
+    pub unit: &'static str,
+    value: Value,
 }
 
 const SPEED: Over = (Variable::Speed, Factor::One);
@@ -47,17 +56,29 @@ static FORCES: [Term; 12] = [
         "x·v",
         "N·s/m²",
         |_, x, v, _| x * v,
-        |_, _, v, _| v,
+        ("v", "N·s/m", |_, _, v, _| v),
     ),
     with(
         POSITION_BY_DIRECTION,
         "x·sign v",
         "N/m",
         |_, x, _, s| x * s,
-        |_, _, _, s| s,
+        ("sign v", "N", |_, _, _, s| s),
     ),
-    with(POSITION, "x", "N/m", |_, x, _, _| x, |_, _, _, _| 1.0),
-    with(POSITION, "x²", "N/m²", |_, x, _, _| x * x, |_, _, _, _| 1.0),
+    with(
+        POSITION,
+        "x",
+        "N/m",
+        |_, x, _, _| x,
+        ("", "N", |_, _, _, _| 1.0),
+    ),
+    with(
+        POSITION,
+        "x²",
+        "N/m²",
+        |_, x, _, _| x * x,
+        ("", "N", |_, _, _, _| 1.0),
+    ),
     term_of(
         TIME_BY_DIRECTION,
         "exp(−t / 1 s)·sign v",
@@ -81,9 +102,15 @@ static FORCES: [Term; 12] = [
         "t·sign v",
         "N/s",
         |t, _, _, s| t * s,
-        |_, _, _, s| s,
+        ("sign v", "N", |_, _, _, s| s),
     ),
-    with(TIME, "t", "N/s", |t, _, _, _| t, |_, _, _, _| 1.0),
+    with(
+        TIME,
+        "t",
+        "N/s",
+        |t, _, _, _| t,
+        ("", "N", |_, _, _, _| 1.0),
+    ),
 ];
 
 /// Displacements of the load on its transmission.
@@ -108,15 +135,16 @@ const fn with(
     over: Over,
     words: &'static str,
     unit: &'static str,
-    value: Value,
-    beside: Value,
+    law: Value,
+    (beside, beside_unit, value): (&'static str, &'static str, Value),
 ) -> Term {
     Term {
-        over,
-        words,
-        unit,
-        value,
-        beside: Some(beside),
+        beside: Some(Beside {
+            words: beside,
+            unit: beside_unit,
+            value,
+        }),
+        ..term_of(over, words, unit, law)
     }
 }
 
@@ -141,6 +169,12 @@ impl Term {
         depends_on(self.over)
     }
 
+    /// Its law and that of what it is taken with.
+    fn values(&self) -> impl Iterator<Item = Value> + use<> {
+        let beside = self.beside.as_ref().map(|beside| beside.value);
+        [Some(self.value), beside].into_iter().flatten()
+    }
+
     /// Its course on these motions, and that of what it is taken with: one series a log, each.
     pub fn series(&self, courses: &[Course], middle: f64) -> Vec<Vec<Vec<f64>>> {
         let one = |value: Value| {
@@ -150,8 +184,7 @@ impl Term {
             };
             courses.iter().map(of).collect()
         };
-        let values = [Some(self.value), self.beside].into_iter().flatten();
-        values.map(one).collect()
+        self.values().map(one).collect()
     }
 
     /// Disturbances of these motions by it with these factors, of the term and of what it is
@@ -257,6 +290,12 @@ impl Term {
         let [most, size] = [active.values[FIRST], active.values[FIRST + 1]];
         [size / most, 1.0 / most]
     }
+
+    /// The factor of what it is taken with; `None` if it is taken alone.
+    pub fn factor_beside(active: &ActiveEffect) -> Option<f64> {
+        let beside = active.values.get(FIRST + EACH..)?;
+        Some(beside.get(1)? / beside[0])
+    }
 }
 
 fn install(values: &[f64], to: &mut Changes<'_>) -> Result<(), SetupError> {
@@ -264,9 +303,9 @@ fn install(values: &[f64], to: &mut Changes<'_>) -> Result<(), SetupError> {
         return Ok(());
     };
     let term = FORCES.get(place as usize);
-    let laws = term.into_iter().flat_map(|t| [Some(t.value), t.beside]);
+    let laws = term.into_iter().flat_map(Term::values);
     let sizes = each.chunks_exact(EACH).map(|of| of[1] / of[0]);
-    let parts: Vec<(Value, f64)> = laws.flatten().zip(sizes).collect();
+    let parts: Vec<(Value, f64)> = laws.zip(sizes).collect();
     // What has a direction comes on through the bristle, as the library's dry friction does.
     to.load(move |t: &TableState| {
         let of =
@@ -299,8 +338,12 @@ mod tests {
         let motions = [course()];
         for term in terms(Place::Force) {
             let active = term.as_effect(&motions).unwrap();
-            let [factor, per_newton] = Term::factor(&Term::sized(active, &[2.5, 1.0]));
+            let sized = Term::sized(active, &[2.5, 1.5]);
+            let [factor, per_newton] = Term::factor(&sized);
             assert!((factor - 2.5).abs() < 1e-12, "{}", term.words);
+            let beside = Term::factor_beside(&sized);
+            assert_eq!(beside.is_some(), term.beside.is_some(), "{}", term.words);
+            assert!(beside.is_none_or(|beside| (beside - 1.5).abs() < 1e-12));
             let series = term.series(&motions, super::middle(&motions));
             let most = series[0][0].iter().fold(0.0_f64, |m, v| m.max(v.abs()));
             assert!((per_newton * most - 1.0).abs() < 1e-12, "{}", term.words);

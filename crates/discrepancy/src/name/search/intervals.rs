@@ -116,6 +116,7 @@ impl Search<'_> {
             fit: self.fit,
             named: self.named,
             replaced: self.replaced,
+            within_error: self.within_error,
             refused: self.refused,
             leftover: self.leftover,
             library: self.library,

@@ -6,6 +6,7 @@ mod form;
 mod imitation;
 mod intervals;
 mod is_form;
+mod law_error;
 mod laws;
 mod lines;
 mod look_alikes;
@@ -28,6 +29,7 @@ use axis_sim::{Axis, ReplayError};
 pub use self::evidence::{DECIDES, MATERIAL, needed};
 use self::intervals::Intervals;
 pub(crate) use self::is_form::is_form;
+pub(crate) use self::law_error::LAW_ERROR;
 pub(crate) use self::revise::ABOVE_NOISE;
 use self::state::{ANEW, Search, steady_noise, steady_noise_beside};
 pub use self::types::{
@@ -234,6 +236,7 @@ impl Begun {
             leftover: Vec::new(),
             refused: None,
             untransferred: Vec::new(),
+            within_error: Vec::new(),
             unseen: Vec::new(),
             hum: self.hum,
             fit_logs: self.fit_logs,
@@ -261,6 +264,11 @@ impl Search<'_> {
                 (true, Some(refused)) => without.clone().with_refused(refused.clone()),
                 _ => other,
             };
+            intervals = search.intervals()?;
+        }
+        // After the laws outside the library: what is small beside another effect may be what parts it from such a law.
+        while search.drop_within_law_error() {
+            search.revise();
             intervals = search.intervals()?;
         }
         // Only forms of friction beside a law that took the place of all effects: nothing is named that could be refused.

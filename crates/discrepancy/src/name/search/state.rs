@@ -38,6 +38,8 @@ pub(super) struct Search<'a> {
     pub(super) refused: Option<Refused>,
     /// What had another size on the check logs, and the ratio of the sizes.
     pub(super) untransferred: Vec<(Named, f64)>,
+    /// What may be made of the error of the other effects' laws, and its share of what they do.
+    pub(super) within_error: Vec<(&'static str, f64)>,
     /// Effects that ended as a simpler one when they were added to what is named now.
     pub(super) unseen: Vec<&'static str>,
     /// What was taken out of the logs.

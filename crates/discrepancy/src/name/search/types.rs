@@ -255,6 +255,8 @@ pub struct Found {
     pub replaced: Vec<Replaced>,
     /// What was named in the end and is not given, as it makes check motion worse.
     pub refused: Option<Refused>,
+    /// Effects that are not given, as the error of the others' laws may be as large, and their share of what the others do.
+    pub within_error: Vec<(&'static str, f64)>,
     /// Derivatives with respect to the parameters: known ones, then free ones of
     /// the effects.
     pub columns: Columns,
