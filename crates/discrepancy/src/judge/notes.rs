@@ -143,11 +143,16 @@ fn slow_of_loop_note(check: &Gap) -> String {
 
 /// What stood beside a larger effect.
 fn law_error_note((name, share): &(&'static str, f64)) -> String {
-    format!(
-        "{name} would explain more, but does {:.1} % of what the other effects do at the same frequencies, and a law of the library may be off by {:.0} % of that: not named",
-        100.0 * share,
-        100.0 * LAW_ERROR
-    )
+    match *share > 0.0 {
+        true => format!(
+            "{name} would explain more, but is not named: it does {:.1} % of what the other effects do at the same frequencies, and their laws may be off by {:.0} %",
+            100.0 * share,
+            100.0 * LAW_ERROR
+        ),
+        false => format!(
+            "{name} would explain more of the fitted logs, but is not named: it does nothing on check motion, which cannot confirm it"
+        ),
+    }
 }
 
 /// What must be known of a residual that is above its noise, and too small to be a lack of the model.

@@ -4,7 +4,8 @@
 //! forces by a force, one of kinematics by a displacement. What stands beside a large effect and does less than that share of
 //! it, at the same frequencies, may be made of its error: Stribeck friction beside a bump of another shape than the library's.
 //! Evidence does not part the two, as it grows with the length of the logs, and so does that of an error. An effect that
-//! is another value of a parameter of the axis (a mass, a gain, a delay) is as exact as the model.
+//! is another value of a number of the axis file (a mass, a gain, a delay, dry or viscous friction) asks for no law that the
+//! model does not have, and is not asked.
 
 use axis_sim::effects::Effect;
 use nalgebra::Complex;
@@ -24,6 +25,13 @@ const EDGES: [f64; 13] = [
 /// viscous friction by direction reaches 0.156 and brings the model nearer to motion that was not fitted.
 pub(crate) const LAW_ERROR: f64 = 0.12;
 
+/// Effects that are another value of a number of the axis file, beside those that change a role.
+const OF_THE_FILE: [&str; 2] = ["coulomb-friction", "viscous-friction"];
+
+fn is_of_the_file(effect: &Effect) -> bool {
+    effect.roles().next().is_some() || OF_THE_FILE.contains(&effect.name)
+}
+
 impl Search<'_> {
     /// Takes out the effect that is smallest beside the others, if it is within [`LAW_ERROR`] of them.
     pub(super) fn drop_within_law_error(&mut self) -> bool {
@@ -35,6 +43,7 @@ impl Search<'_> {
         };
         let name = self.fit.state.effects[effect].effect.name;
         *self = without;
+        self.within_error.retain(|(other, _)| *other != name);
         self.within_error.push((name, share));
         true
     }
