@@ -79,7 +79,7 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
     let Significant { shape, solved, .. } = explains_most.curve;
     let (place, sought) = (shape.place, Sought::AsGoodAs(solved.gain));
     let short = Short::of([&fitter, &checker], found, &check, &rest, place, sought);
-    let short = short.and_then(|short| {
+    let short = short.filter(Short::is_determined).and_then(|short| {
         let set = checker.set;
         let left = set.amplitudes(short.left());
         let told = set.layout.deviance(&check.rest) - set.layout.deviance(&left);

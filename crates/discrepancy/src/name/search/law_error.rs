@@ -75,8 +75,10 @@ impl Search<'_> {
             share
         };
         let all = (0..laws.len()).map(|of| (laws[of], share(of)));
-        let within =
-            all.filter(|((_, effect), share)| *share < LAW_ERROR && !self.is_accepted(effect.name));
+        let within = all.filter(|((_, effect), share)| {
+            let is_kept = is_of_the_file(effect) || self.is_accepted(effect.name);
+            *share < LAW_ERROR && !is_kept
+        });
         let least = within.min_by(|a, b| a.1.total_cmp(&b.1));
         least.map(|((place, _), share)| (place, share))
     }
