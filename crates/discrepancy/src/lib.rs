@@ -11,16 +11,16 @@
 //! D(θ, e) = 2 Σ_b n_b log det S_b + Σ_i (θ_i / s_i)²,     S_b = Σ_{f in b} r(f) r(f)ᴴ / n_b
 //! ```
 //!
-//! is minus twice the log-likelihood of a stationary rest with any spectrum
+//! is minus twice the log-likelihood of a stationary residual with any spectrum
 //! (Whittle 1953). An effect is named when it lowers D by more than chance
 //! could in any candidate, on logs that were not fitted as well, and by more
 //! than a hundredth of what was found before. Where the effects named in the end make any
 //! channel of these logs worse than it was without them, none is given.
 //!
-//! # Rooms, in the order in which data passes
+//! # Modules, in the order in which data passes
 //! - [`logs`]: whether logs can be compared at all: sampling, units, signs, holes.
 //! - `answers`: how a model answers a log, by closed-loop replay or torque balance; a
-//!   [`LogSet`] is logs that are compared together. `spectrum`: their rest in frequency, and D.
+//!   [`LogSet`] is logs that are compared together. `spectrum`: their residual in frequency, and D.
 //! - `noise`: how much of a residual is noise of sensors or of the logger.
 //! - `estimate`: known parameters and sizes of effects, with intervals ([`Fitter`]).
 //! - `name`: [`search()`] screens all effects by what they would do to these logs, refines

@@ -6,7 +6,7 @@
 //! frames, exceptions and Ctrl-C. This crate converts between the two and does nothing else:
 //! every equation, and every word of an error, is that of the crate below it.
 //!
-//! # Rooms
+//! # Modules
 //! - `begin`: axes to begin with. `loops`: margins and tuning of an axis' loops. `frf`: frequency responses from logs. `linear`: state space and frequency responses. `controller`: an unknown one, from logs.
 //! - `axis`, `moves`, `motion_program`, `motion`, `simulate`, `run`: an axis from a file or a dict, along a motion, to
 //!   arrays.

@@ -12,6 +12,7 @@ pub mod exit;
 pub mod file_set;
 pub mod jobs;
 pub mod json;
+mod log_out;
 mod out_file;
 pub mod output;
 mod page;

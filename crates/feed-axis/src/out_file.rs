@@ -28,7 +28,7 @@ pub fn file() -> impl TypedValueParser<Value = PathBuf> {
 }
 
 /// A name that is one: `-` is standard output for other programs, and carries results here.
-fn named(name: OsString, example: &str) -> Result<PathBuf, String> {
+pub(crate) fn named(name: OsString, example: &str) -> Result<PathBuf, String> {
     match name.to_str() {
         Some("-") => Err(format!(
             "no file is written to standard output, which carries the results; give the name of a file, or ./- for one of that name (such as {example})"

@@ -8,6 +8,7 @@ use std::fmt::{self, Display};
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::Path;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use atomic_write_file::AtomicWriteFile;
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -15,6 +16,14 @@ use serde::{Serialize, Serializer};
 
 use crate::exit::not_out;
 use crate::terminal::{Format, Terminal};
+
+/// Whether standard output carries a log, and results go to standard error.
+static ASIDE: AtomicBool = AtomicBool::new(false);
+
+/// Says that standard output carries a log: results go to standard error.
+pub fn results_aside() {
+    ASIDE.store(true, Ordering::Relaxed);
+}
 
 /// What has been found so far, for the JSON document.
 static DOCUMENT: Mutex<Document> = Mutex::new(Document::new());
@@ -107,16 +116,17 @@ pub fn note(line: impl AsRef<str>) {
     }
 }
 
-/// A line for people: on standard output, unless that is to carry JSON. An error where nobody
+/// A line for people: on standard output, unless that is to carry JSON or a log. An error where nobody
 /// reads it any more.
 pub fn say(line: impl AsRef<str>) -> Result<()> {
-    match Terminal::get().format {
-        Format::Text => line_out(line.as_ref()),
-        Format::Json => {
-            note(line);
-            Ok(())
+    match (Terminal::get().format, ASIDE.load(Ordering::Relaxed)) {
+        (Format::Text, false) => return line_out(line.as_ref()),
+        (Format::Text, true) => {
+            let _ = writeln!(std::io::stderr(), "{}", line.as_ref());
         }
+        (Format::Json, _) => note(line),
     }
+    Ok(())
 }
 
 fn line_out(line: &str) -> Result<()> {

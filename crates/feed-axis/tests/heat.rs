@@ -472,28 +472,18 @@ fn discover_says_what_a_log_of_hours_needs() {
     );
     let message = refuse(&["discover", "--axis", SCREW, "--fit", log]);
     assert!(message.contains("has duty 1"), "{message}");
+}
+
+#[test]
+fn discover_refuses_duties_beside_a_log_of_motion() {
     let folder = tempfile::tempdir().unwrap();
-    let (motor, moved) = (
-        "data/axes/linear-motor.toml",
-        folder.path().join("moved.csv").display().to_string(),
-    );
     let out = folder.path().display().to_string();
-    let simulated = [
-        "--axis",
-        motor,
-        "--trajectory",
-        "1",
-        "--log",
-        &moved,
-        "--out",
-        &out,
-    ];
-    succeed(&[&["simulate"], &simulated[..]].concat());
-    let of_motion = [
-        "discover", "--axis", motor, "--fit", &moved, "--check", &moved,
-    ];
-    let duties = ["--duties", "data/heat/duty-1.toml", "--out", &out];
-    let message = refuse(&[&of_motion[..], &duties].concat());
+    let log = folder.path().join("moved.csv").display().to_string();
+    let motor = ["--axis", "data/axes/linear-motor.toml", "--out", &out];
+    let moved = ["simulate", "--trajectory", "1", "--log", &log];
+    succeed(&[&moved[..], &motor].concat());
+    let duties = ["--check", &log, "--duties", "data/heat/duty-1.toml"];
+    let message = refuse(&[&["discover", "--fit", &log], &duties[..], &motor].concat());
     assert!(
         message.contains("--duties is for logs of hours"),
         "{message}"

@@ -74,7 +74,7 @@ fn files_that_cannot_be_meant_are_refused_before_any_work() {
         }
     }
     for command in [
-        &[&simulate[..], &["--log", "-"]].concat(),
+        &[&simulate[..], &["--log", "-", "--format", "json"]].concat(),
         &[&tune[..], &["--out", "-"]].concat(),
         &vec!["log", "convert", "log.csv", "--out", "-"],
         &vec!["schema", "axis", "--out", "-"],

@@ -36,6 +36,7 @@ fn a_reader_that_leaves_is_no_error_to_tell() {
     for arguments in [
         &["simulate", "--trajectory", "1"][..],
         &["simulate", "--trajectory", "1", "--format", "json"],
+        &["simulate", "--trajectory", "1", "--log", "-", "--quiet"],
         &["sample", "--quick", "--out", out],
         &["sample", "--quick", "--out", out, "--shard", "1/1"],
         &["completions", "bash"],
@@ -58,4 +59,33 @@ fn a_reader_that_leaves_is_no_error_to_tell() {
             "{arguments:?}"
         );
     }
+}
+
+/// `--log -` is the log that a file would hold, and nothing else; what was found stands on standard error.
+#[test]
+fn a_log_goes_to_standard_output() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("log.csv");
+    let simulate = |log: &std::ffi::OsStr| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_feed-axis"));
+        let axis = [
+            "simulate",
+            "--axis",
+            "data/axes/linear-motor.toml",
+            "--trajectory",
+            "1",
+            "--log",
+        ];
+        command
+            .args(axis)
+            .arg(log)
+            .current_dir(root())
+            .output()
+            .unwrap()
+    };
+    let written = simulate(file.as_os_str());
+    let piped = simulate("-".as_ref());
+    assert!(piped.status.success());
+    assert_eq!(piped.stdout, std::fs::read(file).unwrap());
+    assert_eq!(piped.stderr, written.stdout);
 }

@@ -8,7 +8,7 @@ use crate::channel::Channel;
 use crate::numeric::holes::{bridge, runs};
 use crate::quality::outliers;
 
-/// Longest run of missing samples that is taken for a short one.
+/// Most missing samples in a row over which a search may go on; longer holes it refuses.
 pub const SHORT_GAP: usize = 5;
 
 /// Samples from a command's pulse within which what is measured may answer it with a pulse of its own: a current

@@ -11,8 +11,8 @@ use super::{HeatError, SlowLog};
 const HELD_OUT: f64 = 0.25;
 
 /// Slowest rate of a log that shows a loop or a torque balance, Hz. A replay reads 100 Hz and more. A balance
-/// differentiates the motion twice and follows it up to a tenth of the rate: below 10 Hz that is below 1 Hz, slower than
-/// the second or less in which feed axes accelerate, and a log shows no force of inertia any more.
+/// differentiates the motion twice and follows it up to a twenty-fifth of the rate: below 10 Hz that is below 0.4 Hz, slower
+/// than the second or less in which feed axes accelerate, and a log shows no force of inertia any more.
 const SLOWEST_MOTION: f64 = 10.0;
 
 /// Whether a log is one of hours that only heat can be read of: slower than 10 Hz, or with the channels of such a log.

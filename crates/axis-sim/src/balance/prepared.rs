@@ -18,13 +18,17 @@ use crate::balance_error::{BalanceError, CutoffReason};
 use crate::replay::ReplayError;
 use crate::torque_channel::TorqueChannel;
 
-/// Highest cut-off of the motion, as a share of the sampling rate: above it, differences are
-/// no derivatives any more.
+/// Highest cut-off of the motion that is chosen by itself, as a share of the sampling rate: there differences
+/// over five samples are derivatives to half a per cent.
 const HIGHEST: f64 = 0.1;
 
 /// Cut-off of the comparison as a share of that of the motion: there the latter takes less
 /// than 0.1 % from the motion, 0.4⁸.
 const BELOW: f64 = 0.4;
+
+/// Highest cut-off of the comparison that an axis file may ask for, as a share of the sampling rate: eight samples a
+/// period.
+const HIGHEST_ASKED: f64 = 0.125;
 
 /// Compared samples per period of the cut-off.
 const RATE: f64 = 2.5;
@@ -78,10 +82,9 @@ impl Balance {
         let own = |(motions, (log, period)): (&Vec<Measured>, &(&Log, f64))| {
             let most = BELOW * HIGHEST / period;
             if let Some(asked) = axis.balance.cutoff {
-                let sampled = 0.5 * HIGHEST / BELOW / period;
                 return Ok(Cutoff::lower(
                     Cutoff(asked, CutoffReason::Asked),
-                    Cutoff(sampled, CutoffReason::Sampling),
+                    Cutoff(HIGHEST_ASKED / period, CutoffReason::Sampling),
                 ));
             }
             // A constant torque is known as well as this by the log, one standard deviation.

@@ -49,10 +49,10 @@ use record::Record;
 pub use report::{Estimated, Learned};
 pub use unexplained::UnexplainedTorque;
 
-/// A torque balance of which more than this share is left is of another machine.
+/// If a fit leaves more than this share of the torque unexplained, the log is of another machine.
 const MOST_LEFT: f64 = 0.3;
-/// What is left may rise by this factor, and by this share of the torque, before a fit
-/// counts as none: earlier moves and the prior pull as well.
+/// A fit is refused if its residual grows by more than this factor, and by more than the next share of the torque: earlier
+/// moves and the prior pull as well.
 const WORSE: f64 = 1.1;
 const FINEST: f64 = 1e-3;
 /// Share of the wind-up under the Coulomb level that half a free travel is uncertain by

@@ -32,7 +32,7 @@ pub struct Prepared {
     pub doubtful: Option<f64>,
     /// Command that the drive holds at its start as the log shows it, in the actuator's unit.
     pub shown_effort: Option<f64>,
-    /// What the fast simulation is short of beside the slow one, by channel.
+    /// Exact simulation less the fast one, by channel.
     pub defect: Vec<Vec<f64>>,
     /// What steps and noise of the sensors change on average, by channel.
     pub sensed: Vec<Vec<f64>>,

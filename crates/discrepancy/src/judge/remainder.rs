@@ -15,7 +15,7 @@ use crate::noise::{Excess, MotionAndRest, excess, log_noise, stays, steady_bands
 /// Share of the gap on check motion that named effects must take away to explain it.
 const EXPLAINED: f64 = 0.9;
 
-/// Share beyond which the residual is of no use to name: a fiftieth of the gap.
+/// Share of the gap on check motion from which on a residual is reported only if it forms a curve: a fiftieth remains.
 const NEARLY_ALL: f64 = 0.98;
 
 /// What the residual is.

@@ -21,7 +21,7 @@ pub enum Verdict {
     /// Named effects remove at least 90 % of the gap above the floor on check
     /// motion, and nothing significant is left.
     Explained,
-    /// Named effects, and a significant rest that is not named.
+    /// Named effects, and a significant residual without a name.
     PartlyExplained,
     /// No gap beyond noise and the tolerance of known parameters.
     NothingMissing,

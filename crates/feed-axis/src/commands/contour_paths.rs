@@ -36,7 +36,7 @@ pub struct PathOptions {
         allow_negative_numbers = true
     )]
     rapid: f64,
-    /// Blend the corners between lines of a program within this distance of each, as after G64 P (mm); without, the feed stops at
+    /// Blend the corners of a program (between lines, arcs, or both) within this distance of each, as after G64 P (mm); without, the feed stops at
     /// corners until a G64 P of the program
     #[arg(
         long,

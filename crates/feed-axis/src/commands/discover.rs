@@ -34,7 +34,7 @@ pub struct Options {
     #[arg(long, value_name = "FILE", default_value = DEFAULT_AXIS)]
     axis: PathBuf,
     /// Logs to fit to: tables of text (CSV and the like), Parquet, MAT v5, or recordings of other
-    /// programs, 100 Hz to 20 kHz; a log in several files as their paths with + between. Or logs of
+    /// programs, 100 Hz to 20 kHz, torque balances from 20 Hz; a log in several files as their paths with + between. Or logs of
     /// hours, slower than 10 Hz: growth and friction that falls with warmth are looked for in them
     #[arg(long, value_name = "LOG", num_args = 1.., required_unless_present = "summary")]
     fit: Vec<PathBuf>,

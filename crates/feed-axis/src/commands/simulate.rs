@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use atomic_write_file::AtomicWriteFile;
-use axis_log::{LogFile, WriteProblem};
 use axis_pipeline::Figures;
 use axis_pipeline::measured::Errors;
 use axis_pipeline::strategies::{Build, NextMove, SharedMotion, StrategyKind};
@@ -16,13 +15,14 @@ use axis_sim::{
 use axis_sim::{MACHINE_STEP, NoiseLevels};
 use clap::Args;
 use compensator::Compensator;
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::Serialize;
 
 use super::motions::{excited_program, listed, trajectory};
 use super::{learn, validate};
 use crate::context::{Common, Context};
 use crate::exit::wrong_use;
+use crate::log_out::{self, LogOut};
 use crate::out_file;
 use crate::output::{note, print, write_whole};
 use crate::page::motion::{self as motion_page, Ran, Shown};
@@ -51,8 +51,9 @@ pub struct Options {
     noise: f64,
     #[arg(long, help = EXACT)]
     exact: bool,
-    /// Where to write the log, one row for each control cycle: .csv, .parquet or .mat (version 5)
-    #[arg(long, value_name = "FILE", value_parser = out_file::file())]
+    /// Where to write the log, one row for each control cycle: .csv, .parquet or .mat (version 5); - for CSV on
+    /// standard output, results then on standard error
+    #[arg(long, value_name = "FILE", value_parser = log_out::log())]
     log: Option<PathBuf>,
     /// Where to write a page of the motion: position and error, speed, current or torque
     /// over time, a table of figures
@@ -119,7 +120,7 @@ pub fn command(options: &Options) -> Result<()> {
             Some(why) => rows.finish_stopped(why),
             None => rows.finish(),
         };
-        placed.into_diagnostic().wrap_err_with(|| unwritten(path))?;
+        placed.map_err(|e| LogOut::failed(path, e))?;
     }
     if let (Some(path), Some(shown)) = (&options.report, &shown) {
         write_page(path, options, &context, shown, stopped.as_ref())?;
@@ -218,7 +219,11 @@ fn write_page(
         _ => "Run it again with --compensation none to see what the compensation takes away.",
     };
     let mut next = vec![next.to_owned()];
-    next.extend(options.log.as_ref().map(|log| {
+    let file = options
+        .log
+        .as_ref()
+        .filter(|log| log.as_path() != Path::new("-"));
+    next.extend(file.map(|log| {
         format!(
             "The log is {}; log inspect shows what it holds.",
             log.display()
@@ -307,22 +312,14 @@ impl Tracking {
     }
 }
 
-/// A log that is written aside while the run goes on, and put in place whole.
-fn begun(path: &Path, axis: &Axis, is_excited: bool) -> Result<FlowRecorder<LogFile>> {
-    let file = LogFile::create(path).map_err(|e| match e.problem {
-        WriteProblem::Extension { .. } => wrong_use(format!("--log {e}")),
-        _ => miette!(e),
-    });
-    let file = file.wrap_err_with(|| unwritten(path))?;
+/// A log that is written while the run goes on.
+fn begun(path: &Path, axis: &Axis, is_excited: bool) -> Result<FlowRecorder<LogOut>> {
+    let out = LogOut::begin(path)?;
     let mut recorder = Recorder::as_logged(axis, axis.period).into_diagnostic()?;
     if is_excited {
         recorder = recorder.with(excitation_channel(axis));
     }
-    Ok(FlowRecorder::to(file, recorder))
-}
-
-fn unwritten(path: &Path) -> String {
-    format!("cannot write the log {}", path.display())
+    Ok(FlowRecorder::to(out, recorder))
 }
 
 /// The motion, and what its program adds to the command.

@@ -36,10 +36,10 @@ pub struct FeedbackSettings {
     /// Deviation of the command from what acts, in greatest commands; 1/15 [1 A]. It keeps
     /// the observer quick, and with it the margins.
     pub command: f64,
-    /// Noise of the position, in ways r a_max T² of the greatest acceleration in a cycle; 1.8
-    /// [70 nm].
+    /// Standard deviation of the position's noise, in units of r a_max T², the travel that the greatest
+    /// acceleration makes in a cycle; 1.8 [70 nm].
     pub position: f64,
-    /// Noise of the motor's speed, in speeds a_max T; 0.04 [0.01 rad/s].
+    /// Standard deviation of the motor's speed, in units of a_max T; 0.04 [0.01 rad/s].
     pub speed: f64,
     /// Noise of the q current, in greatest commands; 1/3000 [5 mA].
     pub current: f64,

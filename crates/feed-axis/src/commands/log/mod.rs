@@ -15,6 +15,7 @@ use axis_log::{
     FileSummary, Log, Mapping, MappingProposal, ReadError, ReadProblem, TIME_CHANNEL, columns,
     propose,
 };
+use axis_pipeline::heat::is_slow;
 use axis_report::{Page, render};
 use axis_sim::{Axis, commanded_channels};
 use clap::{Args, Subcommand};
@@ -43,7 +44,7 @@ pub struct Options {
 /// What is done with logs.
 #[derive(Subcommand)]
 enum Command {
-    /// Channels, rates, gaps, units, levels and noise of logs, with a picture; changes nothing
+    /// Channels, rates, gaps, units, levels and noise of logs, with --report a picture; changes nothing
     Inspect(Inspect),
     /// Write a log in channels and SI units as CSV, Parquet or MAT, from any file that is read
     Convert(convert::Options),
@@ -217,7 +218,7 @@ fn seen(
     let channels = names.map(|name| channel_quality(&log, name, against(name)));
     let mut done: Vec<String> = done.iter().map(ToString::to_string).collect();
     done.extend(unused(mapping));
-    done.extend(rate_words(&clock));
+    done.extend(rate_words(&clock, &log));
     Ok(SeenLog {
         channels: channels.collect::<Result<_, _>>().into_diagnostic()?,
         findings: cross_check(&log, mapping, &relations),
@@ -227,10 +228,14 @@ fn seen(
     })
 }
 
-/// Of a rate at which no log is read.
-fn rate_words(clock: &Clock) -> Option<String> {
+/// Of a rate at which no log of motion is read.
+fn rate_words(clock: &Clock, log: &Log) -> Option<String> {
     match rate_of(clock.period) {
         Ok(_) => None,
+        Err(_) if is_slow(log) => Some(format!(
+            "{:.4} Hz: a log of hours for discover and heat --fit",
+            clock.period.recip()
+        )),
         Err(why) => Some(format!("{why}; discover refuses it")),
     }
 }
