@@ -85,7 +85,7 @@ pub(super) fn command(given: &Given<'_>, options: &Options) -> Result<()> {
     let machine = given.machine;
     if machine.thermal_keys_stated() == 0 {
         return Err(miette!(
-            "{} is slower than 10 Hz or has a channel duty_1: of a log of hours only heat can be read, by the axis' thermal network, and {} has no [thermal]; valid: for forces and loops a log of 100 Hz and more; for heat a table [thermal] with what is known of it, at least reference_temperature_deg_c (at which friction has the file's values), and best nut_viscous_share, nut_dry_share, nut_to_table_w_per_k, viscous_fall_percent_per_k, front_bearing_to_bed_w_per_k: keys that are not there are assumed",
+            "{} is slower than 10 Hz or has a channel duty_1: of a log of hours only heat can be read, by the axis' thermal network, and {} has no [thermal]; valid: for loops a log of 100 Hz and more, for forces (a torque balance) of 20 Hz and more; for heat a table [thermal] with what is known of it, at least reference_temperature_deg_c (at which friction has the file's values), and best nut_viscous_share, nut_dry_share, nut_to_table_w_per_k, viscous_fall_percent_per_k, front_bearing_to_bed_w_per_k: keys that are not there are assumed",
             given.fit[0].display(),
             given.file.display()
         ));

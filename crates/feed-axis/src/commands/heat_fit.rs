@@ -189,10 +189,10 @@ impl Fitted {
             n => format!(" and {n} of the friction's power"),
         };
         let mut lines = vec![format!(
-            "{}: fitted to {:.2} h, {} readings of growth{friction}; RMS of model less log {:.2} µm.",
+            "{}: fitted to {:.2} h, {} of growth{friction}; RMS of model less log {:.2} µm.",
             self.logs.join(", "),
             self.hours,
-            self.readings,
+            readings(self.readings),
             self.fitted_rms_um
         )];
         if self.held_out_readings == 0 {
@@ -209,14 +209,21 @@ impl Fitted {
             )
         };
         lines.push(format!(
-            "Held out: the last {} %, {} readings, growth of up to {:.1} µm. Greatest error {}, with the numbers before {}.",
+            "Held out: the last {} %, {}, growth of up to {:.1} µm. Greatest error {}, with the numbers before {}.",
             SixDigits(self.held_out_percent),
-            self.held_out_readings,
+            readings(self.held_out_readings),
             self.held_out_growth_um,
             errors(&self.fitted_numbers),
             errors(&self.assumed_numbers)
         ));
         lines
+    }
+}
+
+fn readings(count: usize) -> String {
+    match count {
+        1 => "1 reading".to_owned(),
+        _ => format!("{count} readings"),
     }
 }
 

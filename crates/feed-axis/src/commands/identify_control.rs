@@ -274,12 +274,14 @@ fn words(found: &ControllerEstimate, machine: &Axis) -> String {
     let least = found.tried.first().and_then(|best| best.left);
     for other in tried {
         lines.push(match (other.left, least) {
-            (Some(left), Some(least)) => format!(
-                "  {} leaves {:.3e} of it on check logs, {:.4} times as much",
-                other.name,
-                left,
-                left / least
-            ),
+            (Some(left), Some(least)) => {
+                let times = match left / least {
+                    times if times < 1e6 => format!("{times:.4} times"),
+                    _ => "more than a million times".to_owned(),
+                };
+                let name = &other.name;
+                format!("  {name} leaves {left:.3e} of it on check logs, {times} as much")
+            }
             _ => format!("  {} could not be fitted", other.name),
         });
     }
