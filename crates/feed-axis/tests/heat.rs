@@ -475,6 +475,13 @@ fn discover_says_what_a_log_of_hours_needs() {
 }
 
 #[test]
+fn log_inspect_shows_a_log_of_hours() {
+    let seen = succeed(&["log", "inspect", "data/heat/probed.csv"]);
+    assert!(seen.contains("a log of hours, for discover and heat --fit"));
+    assert!(seen.contains("growth_um"));
+}
+
+#[test]
 fn discover_refuses_duties_beside_a_log_of_motion() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().display().to_string();

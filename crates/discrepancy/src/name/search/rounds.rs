@@ -326,18 +326,14 @@ impl Search<'_> {
         });
         // Those that are near one another are compared where they end, with
         // derivatives of all effects as they are there, or a simple one that is
-        // not there yet loses to one that contains it. Beside a form the known parameters of
-        // friction do something else, too, and steps towards its speed are short.
+        // not there yet loses to one that contains it. Steps of a speed are short: an onset at
+        // one is as good as that is.
         let best = refined.iter().map(|r| r.gain).fold(0.0, f64::max);
-        let share = |r: &Refined| if r.is_form() { 0.5 } else { 0.8 };
+        let share = |r: &Refined| if r.comes_on_at_a_speed() { 0.5 } else { 0.8 };
         let near = |r: &Refined| r.gain > share(r) * best && r.gain > too_little;
         if refined.iter().filter(|r| near(r)).count() > 1 {
             refined.par_iter_mut().filter(|r| near(r)).for_each(|r| {
-                let known = match r.is_form() {
-                    true => &fitter.known_columns(&r.fit),
-                    false => &self.known,
-                };
-                r.fit = fitter.refine(r.fit.clone(), known, 8);
+                r.fit = fitter.refine(r.fit.clone(), &self.known, 8);
                 r.gain = gain(&r.fit);
             });
         }

@@ -13,7 +13,7 @@ use axis_log::quality::{
 };
 use axis_log::{
     FileSummary, Log, Mapping, MappingProposal, ReadError, ReadProblem, TIME_CHANNEL, columns,
-    propose,
+    propose, read_log,
 };
 use axis_pipeline::heat::is_slow;
 use axis_report::{Page, render};
@@ -164,6 +164,7 @@ fn look(path: &Path, axis: Option<&Axis>, rate_hz: Option<f64>) -> Result<Seen> 
     let log = match prepare(&paths, mapping, &[], options) {
         Ok(prepared) => Ok(seen(path, prepared, mapping, axis)?),
         Err(error) if lacks_time(&error) => Err(LACKS_TIME.to_owned()),
+        Err(_) if paths.iter().all(|path| is_of_hours(path, mapping)) => Err(OF_HOURS.to_owned()),
         Err(error) => return Err(miette!("{error}")),
     };
     let summary = |path: &PathBuf| Ok((path.clone(), columns(path).into_diagnostic()?));
@@ -177,6 +178,13 @@ fn look(path: &Path, axis: Option<&Axis>, rate_hz: Option<f64>) -> Result<Seen> 
 
 /// What a file lacks that is read, and is no log.
 const LACKS_TIME: &str = "no log yet, as it has no time: map a column to \"t_s\" in a [[log.column]] of the axis file, or give sample_rate_hz in its [log]";
+
+/// What a log is whose rows may be far apart.
+const OF_HOURS: &str = "a log of hours, for discover and heat --fit: its rows may be far apart, and are taken as they are";
+
+fn is_of_hours(path: &Path, mapping: &Mapping) -> bool {
+    read_log(path, mapping, &[]).is_ok_and(|log| is_slow(&log))
+}
 
 fn lacks_time(error: &IntakeError) -> bool {
     matches!(
