@@ -114,9 +114,9 @@ pub struct HeatExplained {
 }
 
 /// By which D must be greater without an effect: on what is fitted, on what is not.
-const DECIDES: [f64; 2] = [25.0, 9.0];
+const DECISIVE_EVIDENCE: [f64; 2] = [25.0, 9.0];
 /// Share of its gap that an effect takes away.
-const MATERIAL: f64 = 0.5;
+const LEAST_EVIDENCE_SHARE: f64 = 0.5;
 /// Half of a 95 % interval in standard deviations that have so many degrees of freedom.
 fn within(freedom: f64) -> f64 {
     StudentsT::new(0.0, 1.0, freedom).map_or(f64::INFINITY, |t| t.inverse_cdf(0.975))
@@ -252,15 +252,17 @@ fn judged(
     let falls = |r: &RivalDrift| [0, 1].map(|part| none[kind][part] - r.deviance[part]);
     let is_better = |r: &RivalDrift| {
         let [fitted, held] = falls(r);
-        fitted >= DECIDES[0] && held >= DECIDES[1] && r.deviance[0] + r.deviance[1] < own
+        fitted >= DECISIVE_EVIDENCE[0]
+            && held >= DECISIVE_EVIDENCE[1]
+            && r.deviance[0] + r.deviance[1] < own
     };
     let is_a_drift = rivals.iter().any(is_better);
     let gaps = gaps(problem.logs, fits, &fits.both, kind);
     let alone = gaps_between(problem.logs, fits, [without, &fits.both], kind);
     let named = !is_a_drift
-        && evidence[0] >= DECIDES[0]
-        && evidence[1] >= DECIDES[1]
-        && alone[1].reduction() >= MATERIAL;
+        && evidence[0] >= DECISIVE_EVIDENCE[0]
+        && evidence[1] >= DECISIVE_EVIDENCE[1]
+        && alone[1].reduction() >= LEAST_EVIDENCE_SHARE;
     let (size, at, limit) = found;
     HeatEffect {
         named,
@@ -302,7 +304,8 @@ fn growth(problem: &Problem<'_>, fits: &Fits) -> Result<HeatEffect, ThermalError
             sums[usize::from(r.stretch >= held.fitted)] += r.predicted * r.predicted;
         }
     }
-    let limit = [0, 1].map(|part| fits.deviations.growth * (DECIDES[part] / sums[part]).sqrt());
+    let limit =
+        [0, 1].map(|part| fits.deviations.growth * (DECISIVE_EVIDENCE[part] / sums[part]).sqrt());
     let limit = limit[0].max(limit[1]) * read.predicted.abs();
     let rivals = rival_drift::of_growth(logs, fits.deviations.growth);
     let at = [read.time, read.place];

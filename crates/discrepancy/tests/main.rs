@@ -8,7 +8,6 @@ mod logs;
 #[path = "../../../tests/needs.rs"]
 mod needs;
 mod nothing_missing;
-mod over_speed;
 mod prediction;
 mod sensor_steps;
 mod settings;

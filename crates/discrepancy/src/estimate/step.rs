@@ -119,8 +119,6 @@ impl Fitter<'_> {
             let most = match parameter.nature {
                 _ if parameter.is_size() => f64::INFINITY,
                 Nature::Phase => 1.0,
-                // Of one of any order of magnitude, where it is.
-                Nature::Speed(..) => 0.5 * value.abs(),
                 _ => 0.3 * parameter.typical(&scales).abs().max(value.abs()),
             };
             let [low, high] = parameter.bounds(&scales);

@@ -36,8 +36,8 @@ impl Thin {
         order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
         let strength = |i: &usize| eigen.eigenvalues[*i].max(0.0).sqrt();
         let largest = order.first().map_or(0.0, strength);
-        let told = |s: f64| if s > Self::LEAST * largest { s } else { 0.0 };
-        let strengths = DVector::from_iterator(n, order.iter().map(|i| told(strength(i))));
+        let counted = |s: f64| if s > Self::LEAST * largest { s } else { 0.0 };
+        let strengths = DVector::from_iterator(n, order.iter().map(|i| counted(strength(i))));
         let parts = DMatrix::from_fn(n, n, |i, j| eigen.eigenvectors[(j, order[i])]);
         let mut basis = DMatrix::zeros(rows, n);
         for (i, mut direction) in basis.column_iter_mut().enumerate() {

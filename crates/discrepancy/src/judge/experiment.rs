@@ -21,7 +21,7 @@ use crate::estimate::columns::Columns;
 use crate::estimate::fit::Fitter;
 use crate::estimate::known::known_deviations;
 use crate::name::library::rooms;
-use crate::name::search::{DECIDES, Found};
+use crate::name::search::{DECISIVE_EVIDENCE, Found};
 use crate::noise::{LogNoise, noise_on};
 
 /// A motion to run next.
@@ -66,7 +66,7 @@ pub fn propose(machine: &Axis, found: &Found, noise: &LogNoise) -> Option<Propos
             a
         }
     });
-    best.filter(|p| p.separation >= DECIDES)
+    best.filter(|p| p.separation >= DECISIVE_EVIDENCE)
 }
 
 /// Two explanations of the same logs.

@@ -9,7 +9,7 @@ use super::unknown::{Unknown, in_frequency, lack};
 use crate::answers::{LogSet, Rest};
 use crate::estimate::fit::Fitter;
 use crate::name::gap::{Gap, is_more_than_noise, sizes};
-use crate::name::search::{MATERIAL, Refused};
+use crate::name::search::{LEAST_EVIDENCE_SHARE, Refused};
 use crate::noise::{Excess, MotionAndRest, excess, log_noise, stays, steady_bands};
 
 /// Share of the gap on check motion that named effects must take away to explain it.
@@ -66,7 +66,7 @@ impl<'a> Remainder<'a> {
             .filter(|_| is_bare && named.own_form.is_none() && !is_immaterial);
         let lack = match is_immaterial {
             true => None,
-            false => lack(machine, found, MATERIAL * largest)?,
+            false => lack(machine, found, LEAST_EVIDENCE_SHARE * largest)?,
         };
         // Beside effects that leave next to nothing, a residual without a curve is small change.
         let excess = match lack.is_some() || is_nearly_none || is_immaterial {

@@ -12,7 +12,7 @@ use super::recalibrated::Recalibrated;
 use super::unknown::Unknown;
 use crate::answers::LogSet;
 use crate::name::gap::Gap;
-use crate::name::search::{DECIDES, Found};
+use crate::name::search::{DECISIVE_EVIDENCE, Found};
 
 /// The verdict on a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -239,11 +239,11 @@ impl NextExperiment {
         let expected = format!(
             "One log of it should bring an evidence of {}, and {} are needed",
             said_evidence(self.by),
-            DECIDES
+            DECISIVE_EVIDENCE
         );
-        let needed = (DECIDES / self.by).ceil();
+        let needed = (DECISIVE_EVIDENCE / self.by).ceil();
         match needed {
-            _ if self.by >= DECIDES => format!("{expected}: one log is enough"),
+            _ if self.by >= DECISIVE_EVIDENCE => format!("{expected}: one log is enough"),
             // As many as nobody records.
             _ if needed <= 100.0 => format!("{expected}: record {needed} logs"),
             _ => format!("{expected}: logs of it hardly distinguish the two"),

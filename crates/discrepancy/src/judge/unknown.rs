@@ -68,9 +68,9 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
     let curves = significant(found, &rest, material);
     let above_noise = curves.iter().filter(|curve| curve.is_above_noise);
     let tried = above_noise
-        .take(TOLD)
-        .map(|curve| told(curve, &checker, &check));
-    let tried: Vec<Told<'_>> = tried.collect();
+        .take(TRIED)
+        .map(|curve| held_out(curve, &checker, &check));
+    let tried: Vec<HeldOut<'_>> = tried.collect();
     let holds = simplest_that_holds(&tried);
     // A short term goes on where the curve ends, and may hold where no curve does.
     let Some(explains_most) = holds.or(tried.first().copied()) else {
@@ -82,10 +82,10 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
     let short = short.filter(Short::is_determined).and_then(|short| {
         let set = checker.set;
         let left = set.amplitudes(short.left());
-        let told = set.layout.deviance(&check.rest) - set.layout.deviance(&left);
-        tracing::debug!(over = ?short.over(), gain = short.gain(), told, "a short term");
+        let evidence = set.layout.deviance(&check.rest) - set.layout.deviance(&left);
+        tracing::debug!(over = ?short.over(), gain = short.gain(), evidence, "a short term");
         let curve = curves.iter().find(|c| c.is_over(place, short.over()))?;
-        (told >= curve.least).then_some((short, Told { curve, told }))
+        (evidence >= curve.least).then_some((short, HeldOut { curve, evidence }))
     });
     // A term with its one number that does as much as the knots of any curve says better on what it
     // depends.
@@ -112,7 +112,7 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
         solved.values.iter().copied().collect(),
         solved.deviations.clone(),
     );
-    let evidence = [solved.gain, of_it.told];
+    let evidence = [solved.gain, of_it.evidence];
     let said = unknown(shape, machine.freedom(), curve, evidence, formula);
     Ok(Some(said))
 }
@@ -201,9 +201,9 @@ impl Significant<'_> {
 
 /// A curve, and the fall of D of the check logs with it.
 #[derive(Clone, Copy)]
-struct Told<'a> {
+struct HeldOut<'a> {
     curve: &'a Significant<'a>,
-    told: f64,
+    evidence: f64,
 }
 
 /// The curves that are significant on the fitted logs, those that explain most first.
@@ -236,26 +236,28 @@ fn significant<'a>(found: &'a Found, rest: &Rest<'_>, material: f64) -> Vec<Sign
 }
 
 /// One of them on the check logs.
-fn told<'a>(curve: &'a Significant<'a>, checker: &Fitter<'_>, check: &Fit) -> Told<'a> {
+fn held_out<'a>(curve: &'a Significant<'a>, checker: &Fitter<'_>, check: &Fit) -> HeldOut<'a> {
     let (values, begins) = (curve.solved.values.as_slice(), Beginnings::default());
-    let told = curve.shape.told(checker, check, values, &begins);
-    tracing::debug!(place = ?curve.shape.place, over = curve.shape.depends_on(), gain = curve.solved.gain, of_noise = curve.solved.of_noise, told, "what depends on what");
-    Told { curve, told }
+    let evidence = curve
+        .shape
+        .held_out_evidence(checker, check, values, &begins);
+    tracing::debug!(place = ?curve.shape.place, over = curve.shape.depends_on(), gain = curve.solved.gain, of_noise = curve.solved.of_noise, evidence, "what depends on what");
+    HeldOut { curve, evidence }
 }
 
 /// Of those that hold on the check logs, the simplest of those that tell about as much as the best.
-fn simplest_that_holds<'a>(tried: &[Told<'a>]) -> Option<Told<'a>> {
-    let holds = tried.iter().filter(|t| t.told >= t.curve.least);
+fn simplest_that_holds<'a>(tried: &[HeldOut<'a>]) -> Option<HeldOut<'a>> {
+    let holds = tried.iter().filter(|t| t.evidence >= t.curve.least);
     let most = holds
         .clone()
-        .map(|t| t.told)
+        .map(|t| t.evidence)
         .fold(f64::NEG_INFINITY, f64::max);
-    let about = holds.filter(|t| t.told >= ABOUT * most);
+    let about = holds.filter(|t| t.evidence >= ABOUT * most);
     about.min_by_key(|t| t.curve.index).copied()
 }
 
-/// Curves of which it is seen how much they tell of other motion.
-const TOLD: usize = 6;
+/// Curves that are tried on the check logs.
+const TRIED: usize = 6;
 
 /// Share of what the best curve tells of other motion that a simpler one must tell to be
 /// taken in its place.

@@ -100,7 +100,7 @@ impl Shape {
     /// Fall of D on logs that were not fitted, of which this is the fit, with these values at
     /// the knots; nothing if it does not run. Motion beyond the outermost knots does not
     /// count: nothing tells how the curve goes on there.
-    pub fn told(
+    pub fn held_out_evidence(
         &self,
         checker: &Fitter<'_>,
         fit: &Fit,

@@ -5,10 +5,10 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use crate::spectrum::Layout;
 
 /// Evidence, a fall of D, from which on one explanation is preferred to another: odds of e^12.5.
-pub const DECIDES: f64 = 25.0;
+pub const DECISIVE_EVIDENCE: f64 = 25.0;
 
 /// Least evidence of a further effect, as a share of the largest so far.
-pub const MATERIAL: f64 = 0.01;
+pub const LEAST_EVIDENCE_SHARE: f64 = 0.01;
 
 /// Most by which the power of a channel's rest on the check logs may rise when an effect
 /// is added: what is not named yet may have made up for some of it there. What is fitted

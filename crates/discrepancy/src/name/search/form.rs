@@ -7,7 +7,7 @@
 //! any effect.
 
 use axis_sim::Axis;
-use axis_sim::effects::{ActiveEffect, Effect, Formed, FrictionForm, Nature, Scales};
+use axis_sim::effects::{ActiveEffect, Effect, Formed, FrictionForm, Scales};
 use rayon::prelude::*;
 
 use super::evidence::{BY_CHANCE, BY_ONE_NUMBER};
@@ -122,15 +122,6 @@ impl Refined {
         self.parts
             .iter()
             .any(|p| FrictionForm::is_one(p.effect.name))
-    }
-
-    /// Whether it is a form with a speed that is fitted.
-    pub(super) fn comes_on_at_a_speed(&self) -> bool {
-        let has_speed = |p: &Screened| {
-            let mut parameters = p.effect.parameters.iter();
-            parameters.any(|p| matches!(p.nature, Nature::Speed(..)))
-        };
-        self.is_form() && self.parts.iter().any(has_speed)
     }
 
     /// Whether it is a form, or a friction that is another one in another form: slip with a

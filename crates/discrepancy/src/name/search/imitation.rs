@@ -6,7 +6,7 @@
 //! fitted logs and predicts of the check logs, and by the latter alone. Numbers count by what each brings by
 //! chance, and so does the choice: k of E effects against one of V laws.
 
-use super::evidence::{DECIDES, MATERIAL};
+use super::evidence::{DECISIVE_EVIDENCE, LEAST_EVIDENCE_SHARE};
 use super::is_form::is_form;
 use super::laws::{BY_CHANCE, Contest};
 use super::state::Search;
@@ -73,7 +73,7 @@ impl Search<'_> {
         );
         // A law of one number has nothing to take up with what is not right but what any effect may have.
         let least = match rival.numbers {
-            1 => DECIDES.max(MATERIAL * in_all),
+            1 => DECISIVE_EVIDENCE.max(LEAST_EVIDENCE_SHARE * in_all),
             _ => (1.0 - SHARE) * in_all,
         };
         // Slow noise is a law over time, but one that predicts no other log.

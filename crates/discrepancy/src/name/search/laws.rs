@@ -24,7 +24,7 @@ use crate::spectrum::Amplitudes;
 pub(super) const BY_CHANCE: f64 = 4.0;
 
 /// Laws, the best of the linearised model from each start, that are fitted with simulations.
-const TOLD: usize = 4;
+const SIMULATED: usize = 4;
 
 /// Rounds of a law's fit, each weighed by what the last one left.
 const ROUNDS: usize = 6;
@@ -157,7 +157,7 @@ impl<'a> Contest<'a> {
         // What promises far less than the effects bring is not simulated.
         let [without, with] = self.deviances;
         all.retain(|beside| without - beside.deviance >= RIVAL * (without - with));
-        let rivals = all.iter().take(TOLD * starts.len());
+        let rivals = all.iter().take(SIMULATED * starts.len());
         let rivals = rivals.filter_map(|beside| self.rival(beside));
         let rivals = rivals.filter(|rival| (rival.fit + rival.check).is_finite());
         rivals.max_by(|a, b| (a.fit + a.check).total_cmp(&(b.fit + b.check)))
@@ -303,7 +303,7 @@ impl<'a> Contest<'a> {
         };
         let with_law = fall(shape.rest(checker.machine, set, &moved, values).ok()?);
         // With other parameters the rest may be nearer by itself; the law must do it.
-        let by_itself = shape.told(&checker, &moved, values, begins);
+        let by_itself = shape.held_out_evidence(&checker, &moved, values, begins);
         let with_effects = fall(set.rest(&self.effects.check.traces));
         Some([with_law.min(by_itself), with_effects])
     }

@@ -26,7 +26,7 @@ use std::sync::Arc;
 
 use axis_sim::{Axis, ReplayError};
 
-pub use self::evidence::{DECIDES, MATERIAL, needed};
+pub use self::evidence::{DECISIVE_EVIDENCE, LEAST_EVIDENCE_SHARE, needed};
 use self::intervals::Intervals;
 pub(crate) use self::is_form::is_form;
 pub(crate) use self::law_error::LAW_ERROR;

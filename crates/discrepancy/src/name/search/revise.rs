@@ -8,7 +8,7 @@
 
 use axis_sim::effects::{ActiveEffect, Effect, EffectVariable};
 
-use super::evidence::{BY_CHANCE, BY_ONE_NUMBER, MATERIAL};
+use super::evidence::{BY_CHANCE, BY_ONE_NUMBER, LEAST_EVIDENCE_SHARE};
 use super::intervals::Intervals;
 use super::is_form::is_form;
 use super::promise::Promises;
@@ -50,7 +50,7 @@ impl Search<'_> {
             let needed = self.needed(dropped.parameters.iter().filter(|p| is_free(p)).count(), 1);
             let form = is_form(&self.fit.state.effects[index]);
             let accepted = self.is_accepted(dropped.name);
-            if !accepted && loss < needed.max(MATERIAL * largest) {
+            if !accepted && loss < needed.max(LEAST_EVIDENCE_SHARE * largest) {
                 *self = without;
                 continue;
             }

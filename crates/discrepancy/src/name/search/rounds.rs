@@ -3,7 +3,7 @@
 use axis_sim::effects::{ActiveEffect, Effect};
 use rayon::prelude::*;
 
-use super::evidence::{LEAST_HELD_OUT, MATERIAL, WORSE, enough};
+use super::evidence::{LEAST_EVIDENCE_SHARE, LEAST_HELD_OUT, WORSE, enough};
 use super::form::own_before_directions;
 use super::promise::{PROMISING, Promises, WORTH};
 use super::refined::{
@@ -326,11 +326,9 @@ impl Search<'_> {
         });
         // Those that are near one another are compared where they end, with
         // derivatives of all effects as they are there, or a simple one that is
-        // not there yet loses to one that contains it. Steps of a speed are short: an onset at
-        // one is as good as that is.
+        // not there yet loses to one that contains it.
         let best = refined.iter().map(|r| r.gain).fold(0.0, f64::max);
-        let share = |r: &Refined| if r.comes_on_at_a_speed() { 0.5 } else { 0.8 };
-        let near = |r: &Refined| r.gain > share(r) * best && r.gain > too_little;
+        let near = |r: &Refined| r.gain > 0.8 * best && r.gain > too_little;
         if refined.iter().filter(|r| near(r)).count() > 1 {
             refined.par_iter_mut().filter(|r| near(r)).for_each(|r| {
                 r.fit = fitter.refine(r.fit.clone(), &self.known, 8);
@@ -370,7 +368,7 @@ impl Search<'_> {
     /// may bring.
     pub(super) fn material(&self) -> f64 {
         let largest = self.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
-        MATERIAL * largest
+        LEAST_EVIDENCE_SHARE * largest
     }
 
     /// Whether what a candidate adds, with `check` its fit of the check logs, is material.
