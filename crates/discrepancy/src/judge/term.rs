@@ -68,7 +68,7 @@ impl Short {
             };
             let series = term.series(&motions, middle).into_iter();
             let columns: Columns = series.map(column).collect();
-            (term, rest.solve(&columns, None))
+            (term, rest.solve(&columns))
         };
         let all: Vec<(&Term, Solved)> = terms(place).par_iter().map(tried).collect();
         let most = all

@@ -130,7 +130,7 @@ fn in_place(
     match law {
         LawInPlace::Curve { index, values } => {
             let (shape, columns) = &curves[*index];
-            let solved = rest.solve(columns, Some(&shape.correlation()));
+            let solved = rest.solve(columns);
             let sought = Sought::AsGoodAs(solved.gain);
             let short = Short::of(logs, found, check, rest, shape.place, sought);
             let is_its = |short: &Short| short.over() == (shape.variable, shape.factor);
@@ -146,7 +146,7 @@ fn in_place(
                 shape.place == force && (shape.variable, shape.factor) == short.over()
             };
             let (shape, columns) = curves.iter().find(|(shape, _)| is_over(shape))?;
-            let solved = rest.solve(columns, Some(&shape.correlation()));
+            let solved = rest.solve(columns);
             let curve = (solved.values.iter().copied().collect(), solved.deviations);
             let formula = Some(short.formula(freedom));
             Some(unknown(shape, freedom, curve, evidence, formula))
@@ -211,7 +211,7 @@ fn significant<'a>(found: &'a Found, rest: &Rest<'_>, material: f64) -> Vec<Sign
     let curves = &found.library.curves.shapes;
     let layout = &found.fit_logs.layout;
     let one = |(index, (shape, columns)): (usize, &'a (Shape, Columns))| {
-        let solved = rest.solve(columns, Some(&shape.correlation()));
+        let solved = rest.solve(columns);
         let needed = needed(layout, shape.knots.len(), curves.len(), 0.01).max(material);
         let is_above_noise = solved.gain >= ABOVE * solved.of_noise;
         // What noise alone brings is not known of a balance, whose runs are its own rest, drawn anew,

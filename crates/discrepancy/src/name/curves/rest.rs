@@ -6,7 +6,6 @@ use crate::estimate::columns::Columns;
 use crate::estimate::fit::{Fit, Fitter};
 use crate::estimate::known::pinned;
 use crate::estimate::projector::Projector;
-use crate::estimate::smooth::Smooth;
 use crate::spectrum::{Amplitudes, Whitener};
 
 /// The fitted logs' rest, with known parameters and effects fitted out.
@@ -51,8 +50,8 @@ impl<'a> Rest<'a> {
         }
     }
 
-    /// The factors of columns that explain most of it; with a `correlation` those of a curve, as a Gaussian process.
-    pub fn solve(&self, columns: &Columns, correlation: Option<&DMatrix<f64>>) -> Solved {
+    /// The factors of columns that explain most of it.
+    pub fn solve(&self, columns: &Columns) -> Solved {
         let layout = &self.fitter.set.layout;
         let seen: Vec<DVector<f64>> = columns
             .iter()
@@ -61,28 +60,20 @@ impl<'a> Rest<'a> {
         let n = seen.len();
         let normal = DMatrix::from_fn(n, n, |i, j| seen[i].dot(&seen[j]));
         let right = DVector::from_fn(n, |i, _| seen[i].dot(&self.rest));
-        // What the model's own parameters can do stays near 0.
-        let ridge = DMatrix::identity(n, n) * (1e-6 * normal.diagonal().max());
-        let mut most_probable = &normal + ridge;
-        if let Some(correlation) = correlation {
-            let curve = Smooth {
-                first: 0,
-                correlation,
-                values: &vec![0.0; n],
-            };
-            curve.add_to(&mut most_probable, &mut right.clone());
-        }
-        let inverse = most_probable.cholesky().map(|c| c.inverse());
+        // A hat that the motion hardly visits, or that the model's own
+        // parameters can do, stays near 0.
+        let ridge = 1e-6 * normal.diagonal().max();
+        let inverse = (normal + DMatrix::identity(n, n) * ridge)
+            .cholesky()
+            .map(|c| c.inverse());
         let inverse = inverse.unwrap_or_else(|| DMatrix::zeros(n, n));
         let values = &inverse * &right;
-        let explained = 2.0 * values.dot(&right) - values.dot(&(&normal * &values));
         let gain_of_noise = |run: &DVector<f64>| {
             let right = DVector::from_fn(n, |i, _| seen[i].dot(run));
-            let values = &inverse * &right;
-            2.0 * values.dot(&right) - values.dot(&(&normal * &values))
+            right.dot(&(&inverse * &right))
         };
         let of_noise = self.noise.iter().map(gain_of_noise).sum::<f64>();
-        let share = (explained / self.rest.norm_squared()).clamp(0.0, 0.999_999);
+        let share = (values.dot(&right) / self.rest.norm_squared()).clamp(0.0, 0.999_999);
         Solved {
             gain: -(self.rest.len() as f64) * (1.0 - share).ln(),
             of_noise: of_noise / self.noise.len().max(1) as f64,
