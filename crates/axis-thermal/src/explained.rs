@@ -115,8 +115,10 @@ pub struct HeatExplained {
 
 /// By which D must be greater without an effect: on what is fitted, on what is not.
 const DECISIVE_EVIDENCE: [f64; 2] = [25.0, 9.0];
-/// Share of its gap that an effect takes away.
-const LEAST_EVIDENCE_SHARE: f64 = 0.5;
+
+/// Share of its gap that an effect must take away to be named.
+const LEAST_REDUCTION: f64 = 0.5;
+
 /// Half of a 95 % interval in standard deviations that have so many degrees of freedom.
 fn within(freedom: f64) -> f64 {
     StudentsT::new(0.0, 1.0, freedom).map_or(f64::INFINITY, |t| t.inverse_cdf(0.975))
@@ -262,7 +264,7 @@ fn judged(
     let named = !is_a_drift
         && evidence[0] >= DECISIVE_EVIDENCE[0]
         && evidence[1] >= DECISIVE_EVIDENCE[1]
-        && alone[1].reduction() >= LEAST_EVIDENCE_SHARE;
+        && alone[1].reduction() >= LEAST_REDUCTION;
     let (size, at, limit) = found;
     HeatEffect {
         named,

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use axis_log::{CsvSink, Log, LogFile, LogSink, WriteProblem};
 use clap::builder::{OsStringValueParser, TypedValueParser};
-use miette::{IntoDiagnostic, Report, Result, WrapErr, miette};
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
 use crate::exit::{not_out, wrong_use};
 use crate::out_file;
@@ -38,7 +38,7 @@ impl LogOut {
     /// # Errors
     /// A format that is none; a folder that cannot be written to; `--format json`, which has standard output for itself.
     pub fn begin(path: &Path) -> Result<Self> {
-        if path != Path::new(PIPED) {
+        if !is_piped(path) {
             let file = LogFile::create(path).map_err(|e| match e.problem {
                 WriteProblem::Extension { .. } => wrong_use(format!("--log {e}")),
                 _ => miette!(e),
@@ -53,15 +53,21 @@ impl LogOut {
         output::results_aside();
         Ok(Self::Piped(CsvSink::new(BufWriter::new(io::stdout()))))
     }
+}
 
-    /// Why a log at `path` was not written.
-    pub fn failed(path: &Path, error: io::Error) -> Report {
-        if path == Path::new(PIPED) {
-            return not_out(&error);
-        }
-        let failed = Err::<(), _>(error).into_diagnostic();
-        let failed = failed.wrap_err_with(|| unwritten(path));
-        failed.unwrap_err()
+/// Whether a log at `path` goes to standard output.
+pub fn is_piped(path: &Path) -> bool {
+    path == Path::new(PIPED)
+}
+
+/// Names the log in what its writing came to.
+///
+/// # Errors
+/// That of `written`.
+pub fn written(path: &Path, written: io::Result<()>) -> Result<()> {
+    match is_piped(path) {
+        true => written.map_err(|e| not_out(&e)),
+        false => written.into_diagnostic().wrap_err_with(|| unwritten(path)),
     }
 }
 

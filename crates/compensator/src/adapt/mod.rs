@@ -51,9 +51,10 @@ pub use unexplained::UnexplainedTorque;
 
 /// If a fit leaves more than this share of the torque unexplained, the log is of another machine.
 const MOST_LEFT: f64 = 0.3;
-/// A fit is refused if its residual grows by more than this factor, and by more than the next share of the torque: earlier
+/// A fit is refused if its residual is greater than this times the one before, plus [`FINEST`] of the torque: earlier
 /// moves and the prior pull as well.
 const WORSE: f64 = 1.1;
+/// Share of the torque within which residuals are alike.
 const FINEST: f64 = 1e-3;
 /// Share of the wind-up under the Coulomb level that half a free travel is uncertain by
 /// whatever a log says.

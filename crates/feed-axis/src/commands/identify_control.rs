@@ -276,8 +276,8 @@ fn words(found: &ControllerEstimate, machine: &Axis) -> String {
         lines.push(match (other.left, least) {
             (Some(left), Some(least)) => {
                 let times = match left / least {
-                    times if times < 1e6 => format!("{times:.4} times"),
-                    _ => "more than a million times".to_owned(),
+                    times if times >= 1e6 => "more than a million times".to_owned(),
+                    times => format!("{times:.4} times"),
                 };
                 let name = &other.name;
                 format!("  {name} leaves {left:.3e} of it on check logs, {times} as much")

@@ -120,7 +120,7 @@ pub fn command(options: &Options) -> Result<()> {
             Some(why) => rows.finish_stopped(why),
             None => rows.finish(),
         };
-        placed.map_err(|e| LogOut::failed(path, e))?;
+        log_out::written(path, placed)?;
     }
     if let (Some(path), Some(shown)) = (&options.report, &shown) {
         write_page(path, options, &context, shown, stopped.as_ref())?;
@@ -219,10 +219,7 @@ fn write_page(
         _ => "Run it again with --compensation none to see what the compensation takes away.",
     };
     let mut next = vec![next.to_owned()];
-    let file = options
-        .log
-        .as_ref()
-        .filter(|log| log.as_path() != Path::new("-"));
+    let file = options.log.as_ref().filter(|log| !log_out::is_piped(log));
     next.extend(file.map(|log| {
         format!(
             "The log is {}; log inspect shows what it holds.",
