@@ -112,6 +112,11 @@ fn a_load_is_named_alone_beside_an_onset_of_another_form() {
         1 => value(0),
         _ => 0.5 * (value(0) - value(1)),
     };
-    // Found: 3.26, as gravity may be off by 30 % and takes the rest.
-    assert!((load / joint.load - 1.0).abs() < 0.1, "{load}");
+    // What load and gravity make together at level is determined. Over 70° they are hard to tell apart: gravity ends 0.7 % above, the
+    // load 0.41 N·m below.
+    let known = |name: &str| found.recalibrated.iter().find(|k| k.name == name);
+    let gravity = joint.gravity * (1.0 + known("gravity-torque").unwrap().share);
+    let [made, there] = [load + gravity, joint.load + joint.gravity];
+    assert!((made / there - 1.0).abs() < 0.002, "{made} beside {there}");
+    assert!((load / joint.load - 1.0).abs() < 0.15, "{load}");
 }

@@ -12,7 +12,7 @@ use crate::cycle::Cycle;
 use crate::data_sheets::DataSheets;
 use crate::effects::{ActiveEffect, TableState};
 use crate::error::SetupError;
-use crate::friction::Friction;
+use crate::friction::{self, Friction};
 use crate::load::Load;
 use crate::mechanism::{Freedom, Mechanism, SolutionMethod};
 use crate::part::{Known, Part, PartError, Role, Values};
@@ -59,6 +59,9 @@ pub struct Axis {
     pub samples: Option<SampleRanges>,
     /// The motions on which the axis is judged, in their order from 1.
     pub trajectories: Vec<MoveSpec>,
+    /// Greatest speed that it was seen to reach, m/s or rad/s; `None` of an axis as its file has it. It stands for that of
+    /// trajectories where there are none.
+    pub fastest: Option<f64>,
     /// What its results are compared with, if anything.
     pub experiment: Option<Experiment>,
     /// Effects beyond the model above: the file's `[[effects]]`.
@@ -212,6 +215,22 @@ impl Axis {
     /// None that a file's axis can have.
     pub fn without_control(mut self) -> Result<Self, PartError> {
         self.control = Part::new(&absent::KIND, Values::default())?;
+        Ok(self)
+    }
+
+    /// The same axis with a dry friction of this level at the load, N or N·m, in the place of its own, that comes on over the same
+    /// way.
+    ///
+    /// # Errors
+    /// [`PartError`] if the level is not finite or below 0.
+    pub fn with_dry_friction(mut self, level: f64) -> Result<Self, PartError> {
+        let lever = self.friction.lever(self.travel_per_radian());
+        let way = (self.friction.unit.bristle_limit() * lever).abs();
+        let mut values = Values::default();
+        values.set("viscous", 0.0);
+        values.set("coulomb", level);
+        values.set("presliding", way);
+        self.friction = Part::new(friction::dry(self.freedom()), values)?;
         Ok(self)
     }
 

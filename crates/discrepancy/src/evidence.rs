@@ -3,11 +3,11 @@
 use axis_sim::{Axis, ReplayError};
 use thiserror::Error;
 
-use crate::answers::{LogSet, Prepared};
+use crate::answers::{LogSet, Prepared, State};
 use crate::controller::{OwnController, better_than_own};
 use crate::judge::{Discovered, Verdict, discovery};
 use crate::logs::{LogSetError, NamedLog, check_distinct, set_apart};
-use crate::name::search::{Found, SearchError, Settings, search};
+use crate::name::search::{Found, SearchError, Settings, dry_friction, search};
 
 /// The logs of one search.
 #[derive(Clone, Debug)]
@@ -19,6 +19,8 @@ pub struct Evidence {
     /// Without part in any choice, for the figures. `None` if there is none to spare: the
     /// figures then are of the check logs.
     pub test: Option<LogSet>,
+    /// The same as they were logged.
+    logs: [Vec<NamedLog>; 3],
 }
 
 /// Why logs are no evidence.
@@ -52,11 +54,17 @@ impl Evidence {
             true => set_apart(check, machine),
             false => (check, test),
         };
-        let test = (!test.is_empty()).then(|| LogSet::new(test, machine));
+        Ok(Self::prepared([fit, check, test], machine)?)
+    }
+
+    fn prepared(logs: [Vec<NamedLog>; 3], machine: &Axis) -> Result<Self, ReplayError> {
+        let set = |logs: &Vec<NamedLog>| LogSet::new(logs.clone(), machine);
+        let [fit, check, test] = &logs;
         Ok(Self {
-            fit: LogSet::new(fit, machine)?,
-            check: LogSet::new(check, machine)?,
-            test: test.transpose()?,
+            fit: set(fit)?,
+            check: set(check)?,
+            test: (!test.is_empty()).then(|| set(test)).transpose()?,
+            logs,
         })
     }
 
@@ -71,19 +79,55 @@ impl Evidence {
         settings: &Settings,
         mut progress: impl FnMut(&str),
     ) -> Result<(Found, Discovered), SearchError> {
+        let machine = &self.as_fast_as_logged(machine)?;
         let mut found = search(machine, &self.fit, &self.check, settings, &mut progress)?;
-        if let Some(test) = &self.test {
+        let resolved = self.resolved(machine, &found);
+        let Self {
+            fit, check, test, ..
+        } = resolved.as_ref().unwrap_or(self);
+        if resolved.is_some() {
+            progress("samples by the friction that was found");
+            found = search(machine, fit, check, settings, &mut progress)?;
+        }
+        if let Some(test) = test {
             found = found.tested_on(machine, test.clone());
         }
         progress("verdict");
-        let mut discovered = discovery(machine, &self.fit, &self.check, &found)?;
+        let mut discovered = discovery(machine, fit, check, &found)?;
         let verdict = discovered.discovery.verdict;
-        if !self.fit.is_balanced() && matches!(verdict, Verdict::Unknown | Verdict::PartlyExplained)
-        {
+        if !fit.is_balanced() && matches!(verdict, Verdict::Unknown | Verdict::PartlyExplained) {
             progress("controller");
             discovered.discovery.assessment.controller = self.other_controller(machine, &found);
         }
         Ok((found, discovered))
+    }
+
+    /// The machine with the greatest speed of the fitted logs, to which speeds of effects are in proportion where its file lists no
+    /// trajectories.
+    fn as_fast_as_logged(&self, machine: &Axis) -> Result<Axis, ReplayError> {
+        let mut machine = machine.clone();
+        if machine.trajectories.is_empty() {
+            let traces = self.fit.simulate(&machine, &State::initial(&machine))?;
+            let speeds = traces.iter().flat_map(|trace| &trace.speed);
+            let fastest = speeds.fold(0.0_f64, |most, v| most.max(v.abs()));
+            machine.fastest = Some(fastest).filter(|v| *v > 0.0);
+        }
+        Ok(machine)
+    }
+
+    /// The logs balanced anew where dry friction was found that is at least as large as the axis file's: beside reversals its
+    /// moments are finer than the low-passed motion, and which samples that spoils is told by its level. `None` too where so few
+    /// samples are left that there is no balance.
+    fn resolved(&self, machine: &Axis, found: &Found) -> Option<Self> {
+        if !self.fit.is_balanced() {
+            return None;
+        }
+        let [own, added] = dry_friction(machine, &found.fit.state.effects);
+        if added <= own || added <= 0.0 {
+            return None;
+        }
+        let machine = machine.clone().with_dry_friction(own + added).ok()?;
+        Self::prepared(self.logs.clone(), &machine).ok()
     }
 
     /// What another controller than that of the fitted machine would leave of the commands.

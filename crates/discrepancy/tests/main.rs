@@ -8,6 +8,7 @@ mod logs;
 #[path = "../../../tests/needs.rs"]
 mod needs;
 mod nothing_missing;
+mod over_speed;
 mod prediction;
 mod sensor_steps;
 mod settings;

@@ -57,9 +57,10 @@ fn mass_alone_lacks_dry_and_viscous_friction_of_the_published_sizes() {
     assert!((100.0 * by / 95.1540 - 1.0).abs() < 0.005, "{by}");
     // The published asymmetric model, which knows no Stribeck friction: Fc 20.1440 and
     // 20.6277 N, Fv 166.7061 and 240.4236 N·s/m.
-    let dry = [0, 1].map(|p| told.value("asymmetric-friction", p));
-    assert!(off(dry[0], 20.1440) < 0.1, "{dry:?}");
-    assert!(off(dry[1], 20.6277) < 0.1, "{dry:?}");
+    // Levels that differ by 2 % bring nothing on the log with pulses.
+    let dry = told.value("coulomb-friction", 0);
+    assert!(off(dry, 20.1440) < 0.05, "{dry:?}");
+    assert!(off(dry, 20.6277) < 0.05, "{dry:?}");
     let viscous = [0, 1].map(|p| told.value("asymmetric-viscous-friction", p));
     assert!(off(viscous[0], 166.7061) < 0.1, "{viscous:?}");
     assert!(off(viscous[1], 240.4236) < 0.1, "{viscous:?}");

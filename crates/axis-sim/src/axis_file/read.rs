@@ -115,6 +115,7 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
         sensors: sensors(&root, registry, freedom)?,
         samples: None,
         trajectories: trajectories(&root, &stroke, &pace, freedom)?,
+        fastest: None,
         experiment: experiment(root.optional_table("experiment")?)?,
         effects: Vec::new(),
         tolerances: Tolerances::all(0.01),

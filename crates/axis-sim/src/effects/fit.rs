@@ -6,9 +6,9 @@ use crate::axis::Axis;
 use crate::freedom::Freedom;
 
 impl Scales {
-    /// Those of an axis. Where its file lists no trajectories, nothing says how fast it is meant
-    /// to be, and the reference machine's speed stands; so does its displacement for an axis
-    /// without a transmission.
+    /// Those of an axis. Where its file lists no trajectories, it is as fast as it was seen to be ([`Axis::fastest`]), or in proportion
+    /// to √(a s) as fast as the reference machine, a its greatest acceleration and s the length of a motion. An axis without a
+    /// transmission has the reference machine's displacement.
     pub fn of(axis: &Axis) -> Self {
         let travel = axis.travel_per_radian();
         let torque = axis.torque_constant() * axis.actuator.limit();
@@ -20,18 +20,23 @@ impl Scales {
         let fastest = axis.trajectories.iter().map(|t| t.limits.velocity());
         let stiffness = axis.mechanism.stiffness();
         let inertia = axis.mechanism.total_inertia();
+        let acceleration = torque / inertia * travel;
+        let motion =
+            (length * Self::REFERENCE.motion / (whole[1] - whole[0])).max(f64::MIN_POSITIVE);
+        let reference = Self::REFERENCE;
+        let reach = acceleration * motion / (reference.acceleration * reference.motion);
         Self {
             freedom: axis.freedom(),
             force,
             displacement: stiffness.map_or(Self::REFERENCE.displacement, |k| force / k),
-            speed: fastest.reduce(f64::max).unwrap_or(Self::REFERENCE.speed),
+            speed: (fastest.reduce(f64::max).or(axis.fastest))
+                .unwrap_or_else(|| reference.speed * reach.sqrt()),
             inertia: axis.mechanism.load_inertia(),
             motor_inertia: inertia,
             motor_torque: torque,
             effort: axis.actuator.limit(),
-            acceleration: torque / inertia * travel,
-            motion: (length * Self::REFERENCE.motion / (whole[1] - whole[0]))
-                .max(f64::MIN_POSITIVE),
+            acceleration,
+            motion,
             stroke: [axis.stroke.minimum, axis.stroke.maximum],
             start: axis.stroke.start,
         }

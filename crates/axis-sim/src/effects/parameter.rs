@@ -130,6 +130,10 @@ impl Measure {
     }
 }
 
+/// Speed from which on friction slides, m/s: upper end of the range of Stribeck velocities in the survey of Armstrong-Hélouvry, Dupont
+/// and Canudas de Wit (Automatica 30 (1994) 1083, doi:10.1016/0005-1098(94)90209-7).
+const SLIDING: f64 = 0.1;
+
 /// How large things are on an axis, which is what its effects are in proportion to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
@@ -243,7 +247,8 @@ impl EffectParameter {
         }
     }
 
-    /// Least and greatest value there: a size never less than on the reference machine.
+    /// Least and greatest value there: a size never less than on the reference machine, and a speed at which friction changes
+    /// at most [`SLIDING`] along a line.
     pub fn bounds(&self, on: &Scales) -> [f64; 2] {
         let by = match self.nature {
             Nature::Place(_) => {
@@ -256,6 +261,9 @@ impl EffectParameter {
         };
         match self.nature {
             Nature::Size { .. } => self.bounds.map(|edge| edge * by.max(1.0)),
+            Nature::Speed(..) if on.freedom == Freedom::Linear => {
+                self.bounds.map(|edge| (edge * by).min(SLIDING))
+            }
             _ => self.bounds.map(|edge| edge * by),
         }
     }

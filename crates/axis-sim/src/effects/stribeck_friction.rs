@@ -3,11 +3,9 @@
 use super::{Effect, EffectChannel, EffectVariable, Measure, Nature, shape, size};
 use crate::error::SetupError;
 
-/// Upper end of the range that the survey of Armstrong-Hélouvry, Dupont and Canudas
-/// de Wit (1994, doi:10.1016/0005-1098(94)90209-7) gives for the velocity, m/s. With a
-/// larger one, beside dry friction of the other sign, it would be a drag with the square
-/// of speed.
-const FASTEST: f64 = 0.1;
+/// A tenth of the reference machine's speed, m/s, where forms of friction end too: above that it is no fall from break-away to sliding,
+/// but a curve over all speeds, which beside dry and viscous friction stands for any law over speed.
+const FASTEST: f64 = 0.012;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "stribeck-friction",
@@ -20,9 +18,9 @@ pub(super) const EFFECT: Effect = Effect {
         shape(
             "velocity",
             Measure::Speed,
-            Nature::Speed([0.004, 0.015, 0.05], [0.005, 0.05]),
-            0.02,
-            [1e-3, FASTEST],
+            Nature::Speed([0.001, 0.003, 0.009], [0.001, 0.008]),
+            0.005,
+            [2e-4, FASTEST],
         ),
     ],
     needs: &[],

@@ -41,6 +41,14 @@ pub const FRICTIONS: &[&PartKind<Friction>] = &[
     &maxwell_slip::ROTARY,
 ];
 
+/// Coulomb's friction at a load.
+pub(crate) fn dry(freedom: Freedom) -> &'static PartKind<Friction> {
+    match freedom {
+        Freedom::Linear => &coulomb::LINEAR,
+        Freedom::Rotary => &coulomb::ROTARY,
+    }
+}
+
 /// Friction between the load and its guides.
 #[derive(Clone, Debug)]
 pub struct Friction {

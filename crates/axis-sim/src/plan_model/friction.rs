@@ -11,7 +11,7 @@ use crate::plant::Start;
 /// Places along the stroke over which friction is averaged.
 const PLACES: u32 = 32;
 
-/// Ten times the greatest velocity of `stribeck-friction` on the reference machine, m/s: from there on
+/// Eighty times the greatest velocity of `stribeck-friction` on the reference machine, m/s: from there on
 /// friction is a straight line over speed, to the last bit.
 const FAST: f64 = 1.0;
 

@@ -82,7 +82,7 @@ impl Fitter<'_> {
             let step = |fit: &Fit| {
                 let effects = self.effect_slopes(fit, 0);
                 let columns = known.iter().cloned().chain(effects).collect();
-                Some(self.solve_beside(noise, fit, &columns).step)
+                Some(self.solve_beside(noise, fit, &columns, None).step)
             };
             let better = |fit: &Fit, step: &DVector<f64>, length: f64| {
                 let trial = self.at(self.moved(&fit.state, step, length)).ok()?;

@@ -10,6 +10,7 @@ pub mod known;
 pub mod linear;
 pub mod projector;
 mod refine;
+pub(crate) mod smooth;
 pub mod spread;
 pub mod starts;
 pub mod step;

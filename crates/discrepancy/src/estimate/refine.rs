@@ -51,7 +51,7 @@ impl Fitter<'_> {
         if trial.deviance < fit.deviance {
             return Some(trial);
         }
-        let correction = self.solve_beside(&fit.rest, &trial, columns).step;
+        let correction = self.solve_beside(&fit.rest, &trial, columns, None).step;
         let corrected = self.at(self.moved(&trial.state, &correction, 1.0)).ok()?;
         (corrected.deviance < fit.deviance).then_some(corrected)
     }

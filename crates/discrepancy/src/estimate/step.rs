@@ -8,6 +8,7 @@ use crate::estimate::bounded::{bounded, inverse_of};
 use crate::estimate::columns::{Columns, free_parameters};
 use crate::estimate::fit::{Fit, Fitter};
 use crate::estimate::known::{known_deviations, tolerances};
+use crate::estimate::smooth::Smooth;
 use crate::estimate::thin::products;
 use crate::spectrum::Amplitudes;
 
@@ -29,15 +30,17 @@ impl Fitter<'_> {
     /// Step and covariance of all parameters from the linearised problem: the
     /// rest's own spectral matrices as weights, the tolerances as priors.
     pub fn solve(&self, fit: &Fit, columns: &Columns) -> Solved {
-        self.solve_beside(&fit.rest, fit, columns)
+        self.solve_beside(&fit.rest, fit, columns, None)
     }
 
-    /// The same with the spectral matrices of another rest as weights.
+    /// The same with the spectral matrices of another rest as weights, and where a curve is among the parameters, with that as a
+    /// Gaussian process.
     pub(crate) fn solve_beside(
         &self,
         weighing: &Amplitudes,
         fit: &Fit,
         columns: &Columns,
+        curve: Option<&Smooth<'_>>,
     ) -> Solved {
         let layout = &self.set.layout;
         let whitener = layout.whitener(&layout.spectral_matrices(weighing));
@@ -54,6 +57,9 @@ impl Fitter<'_> {
             let weight = deviation.powi(-2);
             normal[(i, i)] += weight;
             right[i] -= weight * fit.state.shares[i];
+        }
+        if let Some(curve) = curve {
+            curve.add_to(&mut normal, &mut right);
         }
         let tolerances = tolerances(self.machine);
         let of_effects = self.rooms_of_effects(&fit.state);
@@ -113,6 +119,8 @@ impl Fitter<'_> {
             let most = match parameter.nature {
                 _ if parameter.is_size() => f64::INFINITY,
                 Nature::Phase => 1.0,
+                // Of one of any order of magnitude, where it is.
+                Nature::Speed(..) => 0.5 * value.abs(),
                 _ => 0.3 * parameter.typical(&scales).abs().max(value.abs()),
             };
             let [low, high] = parameter.bounds(&scales);

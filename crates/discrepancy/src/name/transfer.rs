@@ -41,7 +41,7 @@ impl Transfer {
     /// By how much the interval of the ratio stays away from what it may be; positive if the size is another. Logs that do not
     /// tell the size from none say nothing of it.
     pub(crate) fn excess(&self) -> f64 {
-        match self.half_width <= 1.0 {
+        match self.half_width <= self.ratio.abs().max(1.0) {
             true => (self.ratio - 1.0).abs() - self.half_width - TRANSFERS,
             false => f64::NEG_INFINITY,
         }
@@ -58,6 +58,7 @@ mod tests {
         assert!(of(0.85, 0.03) < 0.0 && of(1.19, 0.0) < 0.0);
         assert!(of(0.5, 0.4) < 0.0 && of(-1.7, 3.6) < 0.0 && of(-1.25, 2.05) < 0.0);
         assert!(of(0.42, 0.31) > 0.0 && of(0.65, 0.1) > 0.0 && of(1.5, 0.2) > 0.0);
+        assert!(of(17.0, 6.0) > 0.0);
         assert!(
             Transfer {
                 ratio: f64::NAN,

@@ -60,6 +60,7 @@ pub(super) const FAMILY: Family = Family {
         1.0 + law.at(speed) / law.level
     },
     with_speed: |_| 0.0,
+    whole: |_| None,
     speeds: |active| [0.01, 3.0].map(|by| by * Law::new(&active.values).velocity),
 };
 

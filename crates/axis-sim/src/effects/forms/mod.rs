@@ -31,6 +31,9 @@ struct Family {
     at: fn(&ActiveEffect, f64) -> f64,
     /// Share of the onset that comes with speed instead of displacement.
     with_speed: fn(&ActiveEffect) -> f64,
+    /// The form that comes on with speed alone and lacks as much of the sliding friction, ∫(1 − u') dv, which is what logs show
+    /// first; `None` of a family that has none.
+    whole: fn(&ActiveEffect) -> Option<ActiveEffect>,
     /// Speeds between which it differs from the law of the library.
     speeds: fn(&ActiveEffect) -> [f64; 2],
 }
@@ -109,6 +112,12 @@ impl<'a> FrictionForm<'a> {
     /// Steady friction at a speed above 0, over that of sliding.
     pub fn at(&self, speed: f64) -> f64 {
         (self.family.at)(self.active, speed)
+    }
+
+    /// Another start of a search: the form of its family that comes on with speed alone and lacks as much of the sliding friction,
+    /// ∫(1 − u') dv. That is what logs show first, and share and speed of an onset may be anything beside it.
+    pub fn whole(&self) -> Option<ActiveEffect> {
+        (self.family.whole)(self.active)
     }
 
     /// Share of the onset that comes with speed instead of displacement.
@@ -235,6 +244,9 @@ mod tests {
                 assert!((form.at(speed) - expected).abs() < 1e-12);
             }
             assert!((form.with_speed() - 0.7).abs() < 1e-15);
+            let whole = form.whole().unwrap();
+            let end = (whole.values.len() - 2..whole.values.len()).map(|i| whole.values[i]);
+            assert_eq!(end.collect::<Vec<_>>(), [1.0, 0.7 * 3e-3]);
         }
     }
 

@@ -19,11 +19,11 @@ use crate::error::SetupError;
 use crate::part::PartError;
 
 /// Knots of speed.
-const ONSET_KNOTS: usize = 9;
+const ONSET_KNOTS: usize = 8;
 
-/// As shares of the greatest speed: of the onset, then of the fall after break-away, whose speed may be a
-/// hundredth of the greatest or a tenth.
-const KNOTS: [f64; ONSET_KNOTS] = [1e-4, 4e-4, 1.6e-3, 5e-3, 1.2e-2, 2.5e-2, 5e-2, 0.12, 0.3];
+/// As shares of the greatest speed: of the onset, then of the fall after break-away. What is not over at a tenth of it is a law over
+/// all speeds, and no form of dry friction.
+const KNOTS: [f64; ONSET_KNOTS] = [1e-4, 4e-4, 1.6e-3, 5e-3, 1.2e-2, 2.5e-2, 5e-2, 0.1];
 
 /// First of the knots, and of the numbers that are fitted, among the values.
 const KNOTS_AT: usize = OWN;
@@ -39,10 +39,10 @@ static ONSET_FORM: Effect = Effect {
     channel: EffectChannel::Torque,
     depends_on: "low speed",
     shown_over: EffectVariable::Speed,
-    // Place of the effect and its values; knots; p and c_1 to c_8.
+    // Place of the effect and its values; knots; p and c_1 to c_7.
     parameters: &[
         HELD, HELD, HELD, HELD, HELD, HELD, HELD, KNOT, KNOT, KNOT, KNOT, KNOT, KNOT, KNOT, KNOT,
-        KNOT, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE,
+        SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE,
     ],
     needs: &[],
     install,
@@ -66,6 +66,7 @@ pub(super) const FAMILY: Family = Family {
     },
     at: |active, speed| Curve::new(&active.values).bristle(1.0, speed),
     with_speed: |active| Curve::new(&active.values).share,
+    whole: |_| None,
     speeds: |active| {
         let knots = Curve::new(&active.values).knots;
         [knots[0], knots[ONSET_KNOTS - 1]]

@@ -94,6 +94,7 @@ const fn family(
         begins,
         at,
         with_speed: |active| Onset::new(&active.values).share,
+        whole,
         speeds: |active| SHOWN.map(|by| by * Onset::new(&active.values).velocity),
     }
 }
@@ -120,6 +121,18 @@ fn begins(of: &super::Formed, effect: &'static Effect) -> Vec<ActiveEffect> {
         Some(ActiveEffect { effect, values })
     };
     speeds.filter_map(form).collect()
+}
+
+/// With a share of 1; the area between curve and sliding friction is p v₀ times a number of the curve.
+fn whole(active: &ActiveEffect) -> Option<ActiveEffect> {
+    let mut whole = active.clone();
+    let [share, velocity] = whole.values.last_chunk_mut()?;
+    if !(*share > 0.0 && *share < 1.0) {
+        return None;
+    }
+    *velocity *= *share;
+    *share = 1.0;
+    Some(whole)
 }
 
 /// The module's text in numbers.

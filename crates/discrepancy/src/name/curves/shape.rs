@@ -1,9 +1,12 @@
 //! A curve over a variable: hat functions, and what they do to logs.
 
+use std::f64::consts::PI;
+
 use axis_sim::effects::Measure;
 use axis_sim::mechanism::Freedom;
 use axis_sim::{Axis, Probe, ReplayError};
 
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::answer;
@@ -27,6 +30,9 @@ pub struct Shape {
 pub const KNOTS: usize = 10;
 
 const KNOTS_OF_PRODUCT: usize = 6;
+
+/// Knots over which the values of a curve are alike.
+const ALIKE: f64 = 3.0;
 
 /// How far beyond its outermost knots a curve is taken to go on as there, as a share of what it
 /// spans.
@@ -163,6 +169,27 @@ impl Shape {
             answer(fitter, fit, self.place, series)
         };
         (0..self.knots.len()).into_par_iter().map(column).collect()
+    }
+
+    /// Correlation of its values: Matérn's of order 3/2 over [`ALIKE`] knots (Rasmussen and Williams, Gaussian Processes for Machine
+    /// Learning, 2006, equation 4.17). Either way over speed is by itself, as a law may jump at standstill.
+    pub fn correlation(&self) -> DMatrix<f64> {
+        let count = self.knots.len();
+        let away = |i: usize, j: usize| match self.variable {
+            Variable::Speed if (2 * i < count) != (2 * j < count) => f64::INFINITY,
+            // The chord of a circle of as many knots.
+            Variable::Angle => {
+                let turn = PI / count as f64;
+                (turn * i.abs_diff(j) as f64).sin() / turn
+            }
+            _ => i.abs_diff(j) as f64,
+        };
+        DMatrix::from_fn(count, count, |i, j| {
+            match 3.0_f64.sqrt() * away(i, j) / ALIKE {
+                f64::INFINITY => 0.0,
+                r => (1.0 + r) * (-r).exp(),
+            }
+        })
     }
 
     /// On what it depends, in words.

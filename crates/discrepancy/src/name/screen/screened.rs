@@ -1,6 +1,6 @@
 //! A candidate with what it explains.
 
-use axis_sim::effects::{Effect, Scales};
+use axis_sim::effects::{ActiveEffect, Effect, Scales};
 use nalgebra::{DMatrix, DVector};
 
 use crate::name::library::values_at;
@@ -30,6 +30,14 @@ pub struct Screened {
 }
 
 impl Screened {
+    /// The effect with its starting values.
+    pub fn active(&self) -> ActiveEffect {
+        ActiveEffect {
+            effect: self.effect,
+            values: self.values.clone(),
+        }
+    }
+
     /// Whether the logs would show all that this can do beyond what `own` does: by a
     /// fall of D of `least`, were it as large, in typical sizes, as what was found and
     /// brought `most`. Dry friction of the way back cannot be seen in a log without one.

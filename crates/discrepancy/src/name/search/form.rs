@@ -7,12 +7,13 @@
 //! any effect.
 
 use axis_sim::Axis;
-use axis_sim::effects::{ActiveEffect, Effect, Formed, FrictionForm, Scales};
+use axis_sim::effects::{ActiveEffect, Effect, Formed, FrictionForm, Nature, Scales};
 use rayon::prelude::*;
 
 use super::evidence::{BY_CHANCE, BY_ONE_NUMBER};
-use super::promise::one_each;
-use super::refined::Refined;
+use super::is_form::is_form;
+use super::refined::{Refined, Refinement};
+use super::rounds::NEAR;
 use super::state::Search;
 use super::types::Named;
 use crate::estimate::columns::{Columns, is_free};
@@ -31,6 +32,18 @@ const INSTEAD_OF_MEMORY: f64 = 0.6;
 /// level to be taken instead; what is a thirtieth of a gap is not named beside it either.
 const OF_ONE_LEVEL: f64 = 0.97;
 
+fn best_of(all: Vec<Screened>) -> Option<Screened> {
+    all.into_iter().max_by(|a, b| a.gain.total_cmp(&b.gain))
+}
+
+/// Name of the friction that a form is of.
+fn base_of(form: &ActiveEffect) -> Option<&'static str> {
+    Some(FrictionForm::of(form)?.base()?.effect.name)
+}
+
+/// Effects that are tried together with a form.
+const BESIDE_FORMS: usize = 3;
+
 /// The axis' own dry friction as an effect; `None` where it has none.
 pub(super) fn own_friction(axis: &Axis) -> Option<ActiveEffect> {
     let friction = &axis.friction;
@@ -40,6 +53,17 @@ pub(super) fn own_friction(axis: &Axis) -> Option<ActiveEffect> {
         effect,
         values: vec![level],
     })
+}
+
+/// Level of the axis' own dry friction, and by how much effects raise it, the mean of both directions; N or N·m.
+pub(crate) fn dry_friction(axis: &Axis, effects: &[ActiveEffect]) -> [f64; 2] {
+    let own = own_friction(axis).map_or(0.0, |own| own.values[0]);
+    let of_effect = |active: &ActiveEffect| match active.effect.name {
+        PLAIN | WITH_MEMORY => active.values[0],
+        BY_DIRECTION => 0.5 * (active.values[0] + active.values[1]),
+        _ => 0.0,
+    };
+    [own, effects.iter().map(of_effect).sum()]
 }
 
 impl Search<'_> {
@@ -64,7 +88,7 @@ impl Search<'_> {
     }
 
     /// Forms that are not there yet, beside the derivatives of the fit's own parameters; of each family the
-    /// start that explains most.
+    /// start that explains most, and the same as it comes on with speed alone.
     pub(super) fn forms(&self, own: &Columns) -> Vec<Screened> {
         let speeds = self.fit.traces.iter().flat_map(|t| &t.speed);
         let fastest = speeds.fold(0.0_f64, |most, v| most.max(v.abs()));
@@ -99,9 +123,113 @@ impl Search<'_> {
         let families = forms.chunk_by(|a, b| a.effect.name == b.effect.name);
         let screened = families.map(|family| {
             let free = family[0].effect.parameters.iter().filter(|p| is_free(p));
-            one_each(self.screened_beside(own, family, free.count()))
+            let best = best_of(self.screened_beside(own, family, free.count()))?;
+            let whole = FrictionForm::of(&best.active()).and_then(|form| form.whole());
+            let whole = whole.map(|whole| Screened {
+                values: whole.values,
+                ..best.clone()
+            });
+            Some([Some(best), whole])
         });
-        screened.flatten().collect()
+        screened.flatten().flatten().flatten().collect()
+    }
+
+    /// Adds the effects that explain most, each with the form of a friction that explains most beside it, where a form explains
+    /// nearly as much as any: what an onset of another form leaves hides them, and each of them part of that.
+    pub(super) fn add_beside_forms(&self, refined: &mut Vec<Refined>) {
+        let most = |is: &dyn Fn(&Refined) -> bool| {
+            let gains = refined.iter().filter(|r| is(r)).map(|r| r.gain);
+            gains.fold(0.0, f64::max)
+        };
+        if most(&Refined::is_form) < NEAR * most(&|_| true) {
+            return;
+        }
+        let singles = refined
+            .iter()
+            .filter(|r| r.parts.len() == 1 && !r.is_form());
+        let singles: Vec<&Refined> = singles.take(BESIDE_FORMS).collect();
+        let pairs = singles.into_par_iter().filter_map(|single| {
+            let mut beside = self.clone();
+            beside.fit = single.fit.clone();
+            let own = beside.own_columns();
+            let forms = beside.forms(&own).into_iter().map(|form| vec![form]);
+            let form = beside.best_form(beside.refine(forms.collect(), &own).kept)?;
+            let fit = self.fitter().refine(form.fit, &self.known, 8);
+            Some(Refined {
+                parts: [single.parts.clone(), form.parts].concat(),
+                gain: self.fit.deviance - fit.deviance,
+                fit,
+            })
+        });
+        let pairs: Vec<Refined> = pairs.collect();
+        for r in &pairs {
+            let name = r.parts.iter().map(|p| p.effect.name);
+            tracing::debug!(name = ?name.collect::<Vec<_>>(), gain = r.gain, "beside a form");
+        }
+        refined.extend(pairs);
+        refined.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    }
+
+    /// Puts forms of another family in the place of those that are there, where they explain as much with fewer numbers, or more: which
+    /// family it is shows once the effects beside it are there.
+    pub(super) fn reform(&mut self) {
+        let forms = self.fit.state.effects.iter().filter(|a| is_form(a));
+        let bases: Vec<Option<&str>> = forms.map(base_of).collect();
+        for base in bases {
+            if let Some(other) = self.of_another_family(base) {
+                *self = other;
+            }
+        }
+    }
+
+    /// The form that explains most of fitted and check logs, or the simplest that explains as much: it stands for what is not asked,
+    /// and must carry over to other motion.
+    fn best_form(&self, mut forms: Vec<Refined>) -> Option<Refined> {
+        forms.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        let best = self.simplest_of_best(&forms, 0.0, |best| best - BY_CHANCE)?;
+        Some(forms.swap_remove(best))
+    }
+
+    /// With the form of this friction in the family that explains most; `None` if that is the one it is in.
+    fn of_another_family(&self, base: Option<&str>) -> Option<Self> {
+        let effects = &self.fit.state.effects;
+        let is_of_base = |a: &ActiveEffect| is_form(a) && base_of(a) == base;
+        let index = effects.iter().position(is_of_base)?;
+        let present = effects[index].clone();
+        let mut without = self.clone();
+        let mut state = self.fit.state.clone();
+        for place in state.remove(index) {
+            without.named.remove(place);
+        }
+        // All else stays as it is: it was fitted beside the form, and a friction in no form would lead it away.
+        without.fit = self.fitter().at(state).ok()?;
+        without.check = self.checker().at(without.fit.state.clone()).ok()?;
+        let own = without.own_columns();
+        let mut others = without.forms(&own);
+        others.retain(|s| base_of(&s.active()) == base);
+        let others = others.into_iter().map(|form| vec![form]).collect();
+        let mut all = without.refine(others, &own).kept;
+        all.push(Refined {
+            parts: vec![without.screened_as(present.clone(), &own)?],
+            gain: without.fit.deviance - self.fit.deviance,
+            fit: self.fit.clone(),
+        });
+        let best = without.best_form(all)?;
+        if best.fit.deviance == self.fit.deviance {
+            return None;
+        }
+        let family = best.parts[0].effect.name;
+        let check = without.checker().at(best.fit.state.clone()).ok()?;
+        if !without.holds(&best, &check) {
+            return None;
+        }
+        tracing::debug!(of = present.effect.name, family, "form of another family");
+        let of_all = Refinement {
+            kept: vec![best],
+            unseen: Vec::new(),
+        };
+        without.add(&of_all, 0, check, &[]);
+        Some(without)
     }
 
     /// The fall of the axis' own friction from break-away to sliding, and its speed; `None` of any other.
@@ -118,19 +246,36 @@ impl Search<'_> {
 }
 
 impl Refined {
+    /// Whether it is nothing but a form.
     pub(super) fn is_form(&self) -> bool {
+        self.parts
+            .iter()
+            .all(|p| FrictionForm::is_one(p.effect.name))
+    }
+
+    /// Whether it has a form, alone or beside an effect.
+    pub(super) fn has_form(&self) -> bool {
         self.parts
             .iter()
             .any(|p| FrictionForm::is_one(p.effect.name))
     }
 
-    /// Whether it is a form, or a friction that is another one in another form: slip with a
+    /// Whether it is a form with a speed that is fitted.
+    pub(super) fn comes_on_at_a_speed(&self) -> bool {
+        let has_speed = |p: &Screened| {
+            let mut parameters = p.effect.parameters.iter();
+            parameters.any(|p| matches!(p.nature, Nature::Speed(..)))
+        };
+        self.has_form() && self.parts.iter().any(has_speed)
+    }
+
+    /// Whether it has a form, or is a friction that is another one in another form: slip with a
     /// memory is dry friction whose onset has one.
     fn is_of_another_form(&self) -> bool {
         let with_memory = |p: &Screened| p.effect.name == WITH_MEMORY;
-        let plain = |p: &Screened| p.effect.name == PLAIN;
+        let is_dry = |p: &Screened| DRY.contains(&p.effect.name);
         let others = self.parts.iter().filter(|p| !with_memory(p));
-        self.is_form() || self.parts.iter().any(with_memory) && others.into_iter().all(plain)
+        self.has_form() || self.parts.iter().any(with_memory) && others.into_iter().all(is_dry)
     }
 
     /// Whether it is slip with a memory and another dry friction, and nothing else.
@@ -265,7 +410,7 @@ impl Search<'_> {
         let Some(first) = refined.first().filter(|r| is_other(r)) else {
             return;
         };
-        let with_memory = !first.is_form() && !first.is_rise();
+        let with_memory = !first.has_form() && !first.is_rise();
         let share = match with_memory {
             true => INSTEAD_OF_MEMORY,
             false => INSTEAD,

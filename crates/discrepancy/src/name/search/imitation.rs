@@ -78,7 +78,7 @@ impl Search<'_> {
         };
         // Slow noise is a law over time, but one that predicts no other log.
         let is_law = of_law - (of_effects - choice) > least
-            && rival.effects_check < rival.check
+            && rival.check > SHARE * rival.effects_check
             && contest.effects_beside(&rival.law) < APART;
         is_law.then(|| {
             let reason = RefusalReason::Law {

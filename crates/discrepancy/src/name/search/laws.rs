@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use axis_sim::effects::ActiveEffect;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::revise::RIVAL;
@@ -13,6 +13,7 @@ use super::types::LawInPlace;
 use crate::answers::{Rest as Residual, State};
 use crate::estimate::columns::Columns;
 use crate::estimate::fit::{Fit, Fitter};
+use crate::estimate::smooth::Smooth;
 use crate::name::curves::{Beginnings, Place, Shape, courses};
 use crate::name::library::responses;
 use crate::name::terms::{Term, terms};
@@ -57,6 +58,8 @@ pub(super) struct Rival {
 struct Law<'a> {
     form: Form<'a>,
     columns: Cow<'a, Columns>,
+    /// Of the values of a curve; none of a term.
+    correlation: Option<DMatrix<f64>>,
 }
 
 enum Form<'a> {
@@ -97,6 +100,7 @@ impl<'a> Contest<'a> {
         let curves = curves.map(|(index, (shape, columns))| Law {
             form: Form::Curve(index, shape),
             columns: Cow::Borrowed(columns),
+            correlation: Some(shape.correlation()),
         });
         let motions = courses(without.machine, fitter.set, &without.fit.traces);
         let terms = terms(Place::Force).iter().filter_map(|term| {
@@ -105,6 +109,7 @@ impl<'a> Contest<'a> {
             Some(Law {
                 form: Form::Term(term, active),
                 columns: Cow::Owned(columns),
+                correlation: None,
             })
         });
         let fit_begins = Beginnings::of(&fitter, &without.fit);
@@ -169,7 +174,7 @@ impl<'a> Contest<'a> {
     /// the gap itself.
     fn beside<'b>(&self, law: &'b Law<'b>, start: &'b Fit) -> Beside<'b> {
         let columns = self.columns(law);
-        let (step, deviance) = self.linear(&columns, start);
+        let (step, deviance) = self.linear(&columns, law, start);
         Beside {
             law,
             from: &start.state,
@@ -178,13 +183,27 @@ impl<'a> Contest<'a> {
         }
     }
 
-    /// Where D of the linearised model is least with these columns, and D there.
-    fn linear(&self, columns: &Columns, start: &Fit) -> (DVector<f64>, f64) {
+    /// A curve with these values as a Gaussian process among the [`Contest::columns`]; none of a term.
+    fn curve<'b>(&self, law: &'b Law<'_>, values: &'b [f64]) -> Option<Smooth<'b>> {
+        let correlation = law.correlation.as_ref()?;
+        Some(Smooth {
+            first: self.own.len(),
+            correlation,
+            values,
+        })
+    }
+
+    /// Where D of the linearised model is least with these columns, those of a law among them, and D there.
+    fn linear(&self, columns: &Columns, law: &Law<'_>, start: &Fit) -> (DVector<f64>, f64) {
         let fitter = self.without.fitter();
+        let none = vec![0.0; law.columns.len()];
+        let curve = self.curve(law, &none);
         let mut left = start.rest.clone();
         let mut step = DVector::zeros(columns.len());
         for _ in 0..ROUNDS {
-            step = fitter.solve_beside(&left, start, columns).step;
+            step = fitter
+                .solve_beside(&left, start, columns, curve.as_ref())
+                .step;
             left.clone_from(&start.rest);
             for (column, by) in columns.iter().zip(step.iter()) {
                 let pairs = left.iter_mut().flatten().zip(column.iter().flatten());
@@ -214,9 +233,9 @@ impl<'a> Contest<'a> {
             .map(|(before, after)| before.iter().zip(after).map(|(b, a)| b - a).collect())
             .collect();
         let mut columns = self.columns(law);
-        let (_, of_law) = self.linear(&columns, start);
+        let (_, of_law) = self.linear(&columns, law, start);
         columns.push(does);
-        let (_, of_both) = self.linear(&columns, start);
+        let (_, of_both) = self.linear(&columns, law, start);
         (of_law - of_both) / (without - with).max(f64::MIN_POSITIVE)
     }
 
@@ -342,7 +361,10 @@ impl<'a> Contest<'a> {
             (SHORTER.iter()).find_map(|length| at(beside.from, &none, &beside.step, *length))?;
         for _ in 0..ROUNDS {
             let (fit, values) = &best;
-            let step = fitter.solve_beside(&fit.rest, fit, &columns).step;
+            let curve = self.curve(beside.law, values);
+            let step = fitter
+                .solve_beside(&fit.rest, fit, &columns, curve.as_ref())
+                .step;
             let next = (SHORTER.iter()).find_map(|length| {
                 let next = at(&fit.state, values, &step, *length)?;
                 (next.0.deviance < fit.deviance - ENOUGH).then_some(next)

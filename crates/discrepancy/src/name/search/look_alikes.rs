@@ -10,7 +10,7 @@ use super::revise::RIVAL;
 use super::state::{Search, steady_noise_beside};
 use super::types::{Alike, ONE_CLASS};
 use crate::estimate::projector::sine;
-use crate::name::screen::{Screened, Screening};
+use crate::name::screen::Screened;
 
 impl Search<'_> {
     /// Seeks the look-alikes of each effect anew that was named beside others than stand beside it now, or
@@ -45,7 +45,7 @@ impl Search<'_> {
     /// simulated without it. Where the residual without it is far above noise, all are weighed by noise.
     fn look_alikes_of(&self, index: usize) -> Option<Vec<Alike>> {
         let mut without = self.without(index)?;
-        let ActiveEffect { effect, values } = self.fit.state.effects[index].clone();
+        let effect = self.fit.state.effects[index].effect;
         let gain = without.fit.deviance - self.fit.deviance;
         without.steady = steady_noise_beside(&without.fitter(), &without.fit);
         let own_columns = without.own_columns();
@@ -63,15 +63,7 @@ impl Search<'_> {
         };
         rivals.retain(|parts: &Vec<Screened>| is_rival(&parts[0]));
         rivals.truncate(self.settings.refined);
-        // Its shapes, as the order of a torque, may not be the library's.
-        let matrices = match &without.steady {
-            Some(_) => promises.of_noise().to_vec(),
-            None => without.fit_logs.layout.spectral_matrices(&without.fit.rest),
-        };
-        let itself = [without.candidate(effect, values)];
-        let (fitter, fit) = (without.fitter(), &without.fit);
-        let own = Screening::new(&fitter, fit, &own_columns, &itself, &matrices, |_| true);
-        let own = own.one_by_one().pop()?;
+        let own = without.screened_as(self.fit.state.effects[index].clone(), &own_columns)?;
         let mut of_all = without.refine(rivals, &own_columns);
         // What does not hold on other motion is no second explanation.
         of_all.kept.retain(|rival| {

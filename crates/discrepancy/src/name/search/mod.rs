@@ -27,6 +27,7 @@ use std::sync::Arc;
 use axis_sim::{Axis, ReplayError};
 
 pub use self::evidence::{DECISIVE_EVIDENCE, LEAST_EVIDENCE_SHARE, needed};
+pub(crate) use self::form::dry_friction;
 use self::intervals::Intervals;
 pub(crate) use self::is_form::is_form;
 pub(crate) use self::law_error::LAW_ERROR;

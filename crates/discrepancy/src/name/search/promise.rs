@@ -1,6 +1,6 @@
 //! What is worth a simulation: what the linearised model promises.
 
-use axis_sim::effects::{Effect, Scales};
+use axis_sim::effects::{ActiveEffect, Effect, Scales};
 use rayon::prelude::*;
 
 use super::evidence::enough;
@@ -218,6 +218,17 @@ impl Search<'_> {
             values,
             scales: Scales::of(self.machine),
         }
+    }
+
+    /// An effect that was taken out, screened with its own shapes, which as the order of a torque may not be the library's.
+    pub(super) fn screened_as(&self, active: ActiveEffect, own: &Columns) -> Option<Screened> {
+        let noise = self.steady.as_ref().and_then(|_| self.noise());
+        let matrices =
+            (self.fit_logs.layout).spectral_matrices(noise.as_ref().unwrap_or(&self.fit.rest));
+        let itself = [self.candidate(active.effect, active.values)];
+        let fitter = self.fitter();
+        let screening = Screening::new(&fitter, &self.fit, own, &itself, &matrices, |_| true);
+        screening.one_by_one().pop()
     }
 
     /// Candidates that have no place in the library, with so many `parameters` each, as far as

@@ -3,7 +3,6 @@
 use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, Effect, Nature};
 
-use super::evidence::enough;
 use super::types::RunnerUp;
 use crate::estimate::fit::Fit;
 use crate::name::screen::Screened;
@@ -40,7 +39,7 @@ impl Refined {
     }
 
     /// Numbers that were fitted.
-    fn parameters(&self) -> usize {
+    pub(super) fn parameters(&self) -> usize {
         let all = self.parts.iter().flat_map(|p| p.effect.parameters);
         all.filter(|p| p.nature != Nature::Held).count()
     }
@@ -123,20 +122,6 @@ pub(super) fn best_of_each(refined: &mut Vec<Refined>) {
     });
 }
 
-/// Moves the simplest of those that explain about as much as the best to the
-/// front.
-pub(super) fn simplest_first(mut refined: Vec<Refined>) -> Vec<Refined> {
-    let Some(best) = refined.first().map(|r| r.gain) else {
-        return refined;
-    };
-    let enough = enough(best);
-    let near = refined.iter().enumerate().filter(|(_, r)| r.gain >= enough);
-    if let Some((at, _)) = near.min_by_key(|(_, r)| r.parameters()) {
-        refined[..=at].rotate_right(1);
-    }
-    refined
-}
-
 /// Share of what an effect with a size at its bound explains that a simpler one must explain to be
 /// taken first: what asks for more than there can be was fitted to something else, as friction of
 /// a way back that was not run is to noise at rest.
@@ -144,7 +129,7 @@ const INSIDE: f64 = 0.5;
 
 /// Simpler effects before one that ends at a bound.
 pub(super) fn inside_before_bound(refined: &mut [Refined]) {
-    let is_at_bound = |r: &&Refined| !r.is_form() && r.ends_at_bound();
+    let is_at_bound = |r: &&Refined| !r.has_form() && r.ends_at_bound();
     let Some(first) = refined.first().filter(is_at_bound) else {
         return;
     };
@@ -163,7 +148,8 @@ const ALONE: f64 = 0.5;
 
 /// An effect that explains much alone before two that explain more together.
 pub(super) fn single_before_pair(refined: &mut [Refined]) {
-    let Some(first) = refined.first().filter(|r| r.parts.len() > 1) else {
+    let is_pair = |r: &&Refined| r.parts.len() > 1 && !r.has_form();
+    let Some(first) = refined.first().filter(is_pair) else {
         return;
     };
     let least = ALONE * first.gain;

@@ -38,6 +38,7 @@ impl Search<'_> {
     /// Takes out effects that others added later have made needless, and puts
     /// others in the place of those in whose place they explain as much.
     pub(super) fn revise(&mut self) {
+        self.reform();
         let mut index = 0;
         while index < self.named.len() {
             let Some(without) = self.without(index) else {
@@ -204,7 +205,7 @@ impl Search<'_> {
     }
 
     /// With an effect that does not differ between the directions in the place of one that
-    /// does and brings this `loss`, where that explains as much. Not where a form is of it.
+    /// does and brings this `loss`, where that explains as much of fitted and check logs together. Not where a form is of it.
     fn simplified(&self, index: usize, loss: f64) -> Option<Self> {
         let effects = &self.fit.state.effects;
         let active = &effects[index];
@@ -226,11 +227,12 @@ impl Search<'_> {
         let start = self.fitter().at(state).ok()?;
         simpler.fit = self.fitter().refine(start, &self.known, 8);
         let lost = simpler.fit.deviance - self.fit.deviance;
-        tracing::debug!(of = active.effect.name, lost, loss, "simplified");
-        if lost >= BY_ONE_NUMBER {
+        simpler.check = self.checker().at(simpler.fit.state.clone()).ok()?;
+        let held_out = simpler.check.deviance - self.check.deviance;
+        tracing::debug!(of = active.effect.name, lost, held_out, loss, "simplified");
+        if lost + held_out >= BY_ONE_NUMBER {
             return None;
         }
-        simpler.check = self.checker().at(simpler.fit.state.clone()).ok()?;
         let named = &mut simpler.named[index];
         named.alike.retain(|a| a.fitted.effect.name != effect.name);
         *named = Named {

@@ -1,14 +1,13 @@
 //! Rounds of screening, refining and adding.
 
-use axis_sim::effects::{ActiveEffect, Effect};
+use axis_sim::effects::Effect;
 use rayon::prelude::*;
 
 use super::evidence::{LEAST_EVIDENCE_SHARE, LEAST_HELD_OUT, WORSE, enough};
 use super::form::own_before_directions;
+use super::is_form::is_form;
 use super::promise::{PROMISING, Promises, WORTH};
-use super::refined::{
-    Refined, Refinement, best_of_each, inside_before_bound, simplest_first, single_before_pair,
-};
+use super::refined::{Refined, Refinement, best_of_each, inside_before_bound, single_before_pair};
 use super::state::Search;
 use super::types::{Named, RunnerUp};
 use super::unseen::may_end_unseen;
@@ -21,6 +20,9 @@ use crate::name::screen::{Screened, Screening};
 /// Share of the promised fall of D that a simulation must keep, or other sizes are
 /// tried.
 const KEPT: f64 = 0.8;
+
+/// Share of what the best explains from which on a candidate is compared with it where both end.
+pub(super) const NEAR: f64 = 0.8;
 
 /// The force that acts all along.
 const STANDING: &str = "constant-load";
@@ -43,6 +45,10 @@ impl Search<'_> {
             false => self.awaited_candidates(&promises, &screenings, &screened, &own),
         };
         let mut of_all = self.refine(candidates, &own);
+        if awaited.is_empty() {
+            self.add_beside_forms(&mut of_all.kept);
+            of_all.kept = self.simplest_first(of_all.kept);
+        }
         let refined = &mut of_all.kept;
         self.effects_before_forms(refined);
         single_before_pair(refined);
@@ -118,10 +124,12 @@ impl Search<'_> {
             let with_memory = self.own_with_memory(screened).into_iter();
             worth.extend(with_memory.filter(|pair| promises.are_worth_it(pair, most)));
         }
-        let beside = self.forms(own).into_iter();
-        let beside = beside.chain(self.begun_elsewhere(promises, own));
-        let beside = beside.filter(|s| s.gain >= WORTH * most);
-        worth.extend(beside.map(|one| vec![one]));
+        let is_worth_it = |s: &Screened| s.gain >= WORTH * most;
+        let mut forms = self.forms(own);
+        forms.retain(is_worth_it);
+        let beside = self.begun_elsewhere(promises, own);
+        let beside = beside.into_iter().filter(is_worth_it);
+        worth.extend(forms.into_iter().chain(beside).map(|one| vec![one]));
         worth
     }
 
@@ -158,13 +166,20 @@ impl Search<'_> {
         })
     }
 
-    fn add(&mut self, of_all: &Refinement, place: usize, check: Fit, screened: &[Screened]) {
+    pub(super) fn add(
+        &mut self,
+        of_all: &Refinement,
+        place: usize,
+        check: Fit,
+        screened: &[Screened],
+    ) {
         let refined = &of_all.kept;
         let best = &refined[place];
         let others = refined.iter().enumerate();
         let others = others.filter(|(i, r)| *i != place && r.parts.len() == 1 && !r.is_form());
         let others: Vec<RunnerUp> = others.map(|(_, r)| r.runner_up()).collect();
-        let beside = self.steady.is_none().then(|| {
+        // Beside a form that comes with it look-alikes are sought at the end.
+        let beside = (self.steady.is_none() && !best.has_form()).then(|| {
             let names = self.named.iter().map(|n| n.name);
             names.collect::<Vec<_>>()
         });
@@ -173,7 +188,7 @@ impl Search<'_> {
                 name: part.effect.name,
                 evidence: best.gain,
                 held_out: self.check.deviance - check.deviance,
-                alike: match best.is_form() || beside.is_none() {
+                alike: match beside.is_none() {
                     true => Vec::new(),
                     false => self.alike(part, of_all, place, screened),
                 },
@@ -228,8 +243,42 @@ impl Search<'_> {
                 "refined"
             );
         }
-        let kept = simplest_first(refined);
+        let kept = self.simplest_first(refined);
         Refinement { kept, unseen }
+    }
+
+    /// Moves the simplest of those that explain about as much as the best to the front.
+    fn simplest_first(&self, mut refined: Vec<Refined>) -> Vec<Refined> {
+        if let Some(at) = self.simplest_of_best(&refined, NEAR, enough) {
+            refined[..=at].rotate_right(1);
+        }
+        refined
+    }
+
+    /// The simplest of those that explain what is `enough` beside the best, on fitted and check logs together: numbers fitted to what
+    /// only the fitted logs have bring nothing on others. The first explains most of the fitted logs, and only those count that
+    /// explain that `share` of it.
+    pub(super) fn simplest_of_best(
+        &self,
+        refined: &[Refined],
+        share: f64,
+        enough: fn(f64) -> f64,
+    ) -> Option<usize> {
+        let near = share * refined.first()?.gain;
+        let near = refined.iter().take_while(|r| r.gain >= near);
+        let total = |r: &Refined| {
+            let check = self.checker().at(r.fit.state.clone()).ok()?;
+            Some(r.gain + self.check.deviance - check.deviance)
+        };
+        let near: Vec<&Refined> = near.collect();
+        let totals: Vec<Option<f64>> = near.par_iter().map(|r| total(r)).collect();
+        let best = totals
+            .iter()
+            .flatten()
+            .fold(f64::NEG_INFINITY, |a, b| a.max(*b));
+        let is_enough = |at: &usize| totals[*at].is_some_and(|total| total >= enough(best));
+        let all = (0..near.len()).filter(is_enough);
+        all.min_by_key(|at| near[*at].parameters())
     }
 
     /// The first two rounds of a candidate; `None` if the machine does not run with it, or it is a force in time of which less
@@ -244,10 +293,7 @@ impl Search<'_> {
         let fitter = self.fitter();
         let as_screened = || {
             let mut state = self.fit.state.clone();
-            state.effects.extend(parts.iter().map(|s| ActiveEffect {
-                effect: s.effect,
-                values: s.values.clone(),
-            }));
+            state.effects.extend(parts.iter().map(Screened::active));
             let fit = fitter.at(state).ok()?;
             // Promised sizes are near enough where an answer grows with its
             // size.
@@ -326,9 +372,11 @@ impl Search<'_> {
         });
         // Those that are near one another are compared where they end, with
         // derivatives of all effects as they are there, or a simple one that is
-        // not there yet loses to one that contains it.
+        // not there yet loses to one that contains it. Steps of a speed are short: an onset at
+        // one is as good as that is.
         let best = refined.iter().map(|r| r.gain).fold(0.0, f64::max);
-        let near = |r: &Refined| r.gain > 0.8 * best && r.gain > too_little;
+        let share = |r: &Refined| if r.comes_on_at_a_speed() { 0.5 } else { NEAR };
+        let near = |r: &Refined| r.gain > share(r) * best && r.gain > too_little;
         if refined.iter().filter(|r| near(r)).count() > 1 {
             refined.par_iter_mut().filter(|r| near(r)).for_each(|r| {
                 r.fit = fitter.refine(r.fit.clone(), &self.known, 8);
@@ -371,19 +419,23 @@ impl Search<'_> {
         LEAST_EVIDENCE_SHARE * largest
     }
 
-    /// Whether what a candidate adds, with `check` its fit of the check logs, is material.
+    /// Whether what a candidate adds, with `check` its fit of the check logs, is material; of an effect beside a form what it does
+    /// beside that.
     fn is_material(&self, candidate: &Refined, check: &Fit) -> bool {
         let set = &self.check_logs;
         let after = set.rest(&check.traces);
-        let without = || {
-            let mut state = check.state.clone();
-            let named = state.effects.len() - candidate.parts.len();
-            state.effects.truncate(named);
-            let traces = set.simulate(self.machine, &state).ok()?;
-            Some(set.rest(&traces))
-        };
+        let is_beside_form = candidate.has_form() && !candidate.is_form();
+        let mut state = check.state.clone();
+        let named = state.effects.len() - candidate.parts.len();
+        let added = state.effects.split_off(named);
+        let forms = added.into_iter().filter(|a| is_beside_form && is_form(a));
+        state.effects.extend(forms);
+        let with_form = is_beside_form.then(|| self.checker().at(state.clone()).ok());
+        let without = || Some(set.rest(&set.simulate(self.machine, &state).ok()?));
         let (machine, gap) = (self.machine, &self.gap_before);
-        is_material(machine, set, &self.check, &after, without, gap).unwrap_or(true)
+        let before = with_form.flatten();
+        let before = before.as_ref().unwrap_or(&self.check);
+        is_material(machine, set, before, &after, without, gap).unwrap_or(true)
     }
 
     /// Whether no channel of the check logs, fitted or not, is so much further off than

@@ -75,12 +75,16 @@ impl Search<'_> {
         strongest(lines, OF_LINE / longest, |_| 1.0 / longest)
     }
 
-    /// Share of the fall of D on the fitted logs that a candidate must bring on others.
+    /// Share of the fall of D on the fitted logs that a candidate must bring on others. None is asked of an effect beside a form: most
+    /// of what they bring together may be the form's, on the slow motion of one log.
     pub(super) fn held_out_of(&self, candidate: &Refined) -> f64 {
         let is_wave = |part: &Screened| part.effect.name == REPEATS;
-        match candidate.parts.iter().all(is_wave) {
-            true => HELD_OUT_OF_WAVE,
-            false => HELD_OUT,
+        if candidate.has_form() && !candidate.is_form() {
+            0.0
+        } else if candidate.parts.iter().all(is_wave) {
+            HELD_OUT_OF_WAVE
+        } else {
+            HELD_OUT
         }
     }
 
