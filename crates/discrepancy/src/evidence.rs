@@ -19,7 +19,7 @@ pub struct Evidence {
     /// Without part in any choice, for the figures. `None` if there is none to spare: the
     /// figures then are of the check logs.
     pub test: Option<LogSet>,
-    /// The same as they were logged.
+    /// Those of torque balances as they were logged; none of replays.
     logs: [Vec<NamedLog>; 3],
 }
 
@@ -34,6 +34,9 @@ pub enum EvidenceError {
     #[error(transparent)]
     Replay(#[from] ReplayError),
 }
+
+/// Said where [`Evidence::resolved`] chose samples anew.
+const RESOLVED: &str = "the search was made twice: the axis file states less than half of the dry friction that was found, and which samples beside reversals a torque balance can use depends on it; the figures are those of the second search";
 
 impl Evidence {
     /// Takes logs that were looked at ([`crate::logs::admit`]). Where `test` is empty, a part
@@ -60,11 +63,15 @@ impl Evidence {
     fn prepared(logs: [Vec<NamedLog>; 3], machine: &Axis) -> Result<Self, ReplayError> {
         let set = |logs: &Vec<NamedLog>| LogSet::new(logs.clone(), machine);
         let [fit, check, test] = &logs;
+        let fit = set(fit)?;
         Ok(Self {
-            fit: set(fit)?,
             check: set(check)?,
             test: (!test.is_empty()).then(|| set(test)).transpose()?,
-            logs,
+            logs: match fit.is_balanced() {
+                true => logs,
+                false => Default::default(),
+            },
+            fit,
         })
     }
 
@@ -94,6 +101,9 @@ impl Evidence {
         }
         progress("verdict");
         let mut discovered = discovery(machine, fit, check, &found)?;
+        if resolved.is_some() {
+            discovered.discovery.notes.push(RESOLVED.to_owned());
+        }
         let verdict = discovered.discovery.verdict;
         if !fit.is_balanced() && matches!(verdict, Verdict::Unknown | Verdict::PartlyExplained) {
             progress("controller");
@@ -115,9 +125,9 @@ impl Evidence {
         Ok(machine)
     }
 
-    /// The logs balanced anew where dry friction was found that is at least as large as the axis file's: beside reversals its
-    /// moments are finer than the low-passed motion, and which samples that spoils is told by its level. `None` too where so few
-    /// samples are left that there is no balance.
+    /// The logs balanced anew where dry friction was found that is larger than the axis file's own: beside reversals it changes faster
+    /// than the low-passed motion shows, and its level says which samples that spoils. `None` too where so few samples are left that
+    /// there is no balance.
     fn resolved(&self, machine: &Axis, found: &Found) -> Option<Self> {
         if !self.fit.is_balanced() {
             return None;

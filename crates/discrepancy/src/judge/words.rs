@@ -98,6 +98,8 @@ fn unknown(unknown: &Unknown, beside: bool) -> String {
         .iter()
         .fold(0.0_f64, |most, v| most.max(v.abs()));
     let size = match curve.unit.as_str() {
+        // Beside effects a curve goes with other values of theirs: its own size is not what is left.
+        _ if beside => String::new(),
         // A ratio of spectra, say, is for the picture.
         "N" | "N*m" | "m" | "rad" => {
             format!(", up to {}", ReadUnit::of(&curve.unit, most).said(most))

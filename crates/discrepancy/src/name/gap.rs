@@ -270,8 +270,15 @@ pub(crate) fn sizes(set: &LogSet, rest: &Rest) -> Vec<f64> {
 /// a gap.
 const OF_REST: f64 = 0.5;
 
+/// Whether the residuals differ by next to nothing of what each channel shows ([`LogSet::immaterial`]).
+pub(crate) fn differ_immaterially(machine: &Axis, set: &LogSet, [a, b]: [&Rest; 2]) -> bool {
+    let counted = set.counted();
+    let change = |c: usize| mean(&counted, |l, k| (a[l][c][k] - b[l][c][k]).powi(2)).sqrt();
+    (0..set.channels.len()).all(|c| change(c) < set.immaterial(machine, c))
+}
+
 /// Whether what brought the residual from `before` to `after` is not small in some channel beside
-/// its noise, beside what the channel shows ([`LogSet::immaterial`]), nor beside the `gap` that there was. D counts evidence, not size: it falls with
+/// its noise, nor beside the `gap` that there was. D counts evidence, not size: it falls with
 /// the length of the logs, for what is far beneath their noise as well. Whether a channel came
 /// nearer is not asked: in noise that is common to several channels something may be plain by
 /// how they differ, and yet not bring any one of them nearer.
@@ -299,8 +306,7 @@ pub(crate) fn is_material(
     };
     let of_noise = |c: usize| MATERIAL_OF_NOISE * floors[c].rms;
     let of_gap = |c: usize| OF_GAP * gap.get(c).copied().unwrap_or(0.0);
-    let least = |c: usize| of_noise(c).max(set.immaterial(machine, c));
-    let seen = |c: &usize| change(&earlier, *c) >= least(*c).max(f64::MIN_POSITIVE);
+    let seen = |c: &usize| change(&earlier, *c) >= of_noise(*c).max(f64::MIN_POSITIVE);
     let seen: Vec<usize> = (0..set.channels.len()).filter(seen).collect();
     let of_gap_before = seen.iter().any(|&c| change(&earlier, c) >= of_gap(c));
     let takes_rest = |c: usize| {

@@ -12,8 +12,7 @@ use rayon::prelude::*;
 
 use super::evidence::{BY_CHANCE, BY_ONE_NUMBER};
 use super::is_form::is_form;
-use super::refined::{Refined, Refinement};
-use super::rounds::NEAR;
+use super::refined::{NEAR, Refined, Refinement};
 use super::state::Search;
 use super::types::Named;
 use crate::estimate::columns::{Columns, is_free};
@@ -31,15 +30,6 @@ const INSTEAD_OF_MEMORY: f64 = 0.6;
 /// Share of what slip with a memory and a level each way explain that it must explain with one
 /// level to be taken instead; what is a thirtieth of a gap is not named beside it either.
 const OF_ONE_LEVEL: f64 = 0.97;
-
-fn best_of(all: Vec<Screened>) -> Option<Screened> {
-    all.into_iter().max_by(|a, b| a.gain.total_cmp(&b.gain))
-}
-
-/// Name of the friction that a form is of.
-fn base_of(form: &ActiveEffect) -> Option<&'static str> {
-    Some(FrictionForm::of(form)?.base()?.effect.name)
-}
 
 /// Effects that are tried together with a form.
 const BESIDE_FORMS: usize = 3;
@@ -123,7 +113,8 @@ impl Search<'_> {
         let families = forms.chunk_by(|a, b| a.effect.name == b.effect.name);
         let screened = families.map(|family| {
             let free = family[0].effect.parameters.iter().filter(|p| is_free(p));
-            let best = best_of(self.screened_beside(own, family, free.count()))?;
+            let all = self.screened_beside(own, family, free.count()).into_iter();
+            let best = all.max_by(|a, b| a.gain.total_cmp(&b.gain))?;
             let whole = FrictionForm::of(&best.active()).and_then(|form| form.whole());
             let whole = whole.map(|whole| Screened {
                 values: whole.values,
@@ -170,13 +161,12 @@ impl Search<'_> {
         refined.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     }
 
-    /// Puts forms of another family in the place of those that are there, where they explain as much with fewer numbers, or more: which
-    /// family it is shows once the effects beside it are there.
+    /// Fits each form anew in all families: which one it is shows once the effects beside it are there.
     pub(super) fn reform(&mut self) {
         let forms = self.fit.state.effects.iter().filter(|a| is_form(a));
         let bases: Vec<Option<&str>> = forms.map(base_of).collect();
         for base in bases {
-            if let Some(other) = self.of_another_family(base) {
+            if let Some(other) = self.formed_anew(base) {
                 *self = other;
             }
         }
@@ -190,8 +180,8 @@ impl Search<'_> {
         Some(forms.swap_remove(best))
     }
 
-    /// With the form of this friction in the family that explains most; `None` if that is the one it is in.
-    fn of_another_family(&self, base: Option<&str>) -> Option<Self> {
+    /// With the form of this friction as it explains most, in whatever family; `None` if it is so already.
+    fn formed_anew(&self, base: Option<&str>) -> Option<Self> {
         let effects = &self.fit.state.effects;
         let is_of_base = |a: &ActiveEffect| is_form(a) && base_of(a) == base;
         let index = effects.iter().position(is_of_base)?;
@@ -223,7 +213,7 @@ impl Search<'_> {
         if !without.holds(&best, &check) {
             return None;
         }
-        tracing::debug!(of = present.effect.name, family, "form of another family");
+        tracing::debug!(of = present.effect.name, family, "form fitted anew");
         let of_all = Refinement {
             kept: vec![best],
             unseen: Vec::new(),
@@ -245,6 +235,11 @@ impl Search<'_> {
     }
 }
 
+/// Name of the friction that a form is of.
+fn base_of(form: &ActiveEffect) -> Option<&'static str> {
+    Some(FrictionForm::of(form)?.base()?.effect.name)
+}
+
 impl Refined {
     /// Whether it is nothing but a form.
     pub(super) fn is_form(&self) -> bool {
@@ -260,7 +255,7 @@ impl Refined {
             .any(|p| FrictionForm::is_one(p.effect.name))
     }
 
-    /// Whether it is a form with a speed that is fitted.
+    /// Whether it has a form with a speed that is fitted.
     pub(super) fn comes_on_at_a_speed(&self) -> bool {
         let has_speed = |p: &Screened| {
             let mut parameters = p.effect.parameters.iter();

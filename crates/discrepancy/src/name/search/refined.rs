@@ -7,6 +7,9 @@ use super::types::RunnerUp;
 use crate::estimate::fit::Fit;
 use crate::name::screen::Screened;
 
+/// Share of what the best explains from which on a candidate is compared with it where both end.
+pub(super) const NEAR: f64 = 0.8;
+
 /// One effect, or two, after refinement by simulation.
 pub(super) struct Refined {
     pub(super) parts: Vec<Screened>,

@@ -7,22 +7,21 @@ use super::evidence::{LEAST_EVIDENCE_SHARE, LEAST_HELD_OUT, WORSE, enough};
 use super::form::own_before_directions;
 use super::is_form::is_form;
 use super::promise::{PROMISING, Promises, WORTH};
-use super::refined::{Refined, Refinement, best_of_each, inside_before_bound, single_before_pair};
+use super::refined::{
+    NEAR, Refined, Refinement, best_of_each, inside_before_bound, single_before_pair,
+};
 use super::state::Search;
 use super::types::{Named, RunnerUp};
 use super::unseen::may_end_unseen;
 use crate::estimate::columns::{Columns, free_parameters};
 use crate::estimate::fit::Fit;
-use crate::name::gap::is_material;
+use crate::name::gap::{differ_immaterially, is_material};
 use crate::name::library::is_force_in_time;
 use crate::name::screen::{Screened, Screening};
 
 /// Share of the promised fall of D that a simulation must keep, or other sizes are
 /// tried.
 const KEPT: f64 = 0.8;
-
-/// Share of what the best explains from which on a candidate is compared with it where both end.
-pub(super) const NEAR: f64 = 0.8;
 
 /// The force that acts all along.
 const STANDING: &str = "constant-load";
@@ -158,7 +157,10 @@ impl Search<'_> {
                     return None;
                 }
                 if !self.is_material(candidate, &check) {
-                    immaterial.push(falls);
+                    // An effect beside a form is small, which says nothing of the form alone.
+                    if !candidate.has_form() || candidate.is_form() {
+                        immaterial.push(falls);
+                    }
                     return None;
                 }
             }
@@ -433,8 +435,16 @@ impl Search<'_> {
         let with_form = is_beside_form.then(|| self.checker().at(state.clone()).ok());
         let without = || Some(set.rest(&set.simulate(self.machine, &state).ok()?));
         let (machine, gap) = (self.machine, &self.gap_before);
-        let before = with_form.flatten();
-        let before = before.as_ref().unwrap_or(&self.check);
+        let with_form = with_form.flatten();
+        // What is small beside all that a channel shows may be what is not right in the form.
+        let is_small = |form: &Fit| {
+            let rests = [&set.rest(&form.traces), &after];
+            differ_immaterially(machine, set, rests)
+        };
+        if with_form.as_ref().is_some_and(is_small) {
+            return false;
+        }
+        let before = with_form.as_ref().unwrap_or(&self.check);
         is_material(machine, set, before, &after, without, gap).unwrap_or(true)
     }
 
