@@ -248,7 +248,7 @@ impl EffectParameter {
     }
 
     /// Least and greatest value there: a size never less than on the reference machine, and a speed at which friction changes
-    /// at most [`SLIDING`] along a line.
+    /// at most 0.1 m/s along a line, from which on friction slides.
     pub fn bounds(&self, on: &Scales) -> [f64; 2] {
         let by = match self.nature {
             Nature::Place(_) => {
