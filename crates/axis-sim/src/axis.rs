@@ -59,8 +59,8 @@ pub struct Axis {
     pub samples: Option<SampleRanges>,
     /// The motions on which the axis is judged, in their order from 1.
     pub trajectories: Vec<MoveSpec>,
-    /// Greatest speed that it was seen to reach, m/s or rad/s; `None` of an axis as its file has it. It stands for that of
-    /// trajectories where there are none.
+    /// Greatest speed in logs of it, m/s or rad/s, which stands for that of the trajectories if there are none; `None` after reading
+    /// a file.
     pub fastest: Option<f64>,
     /// What its results are compared with, if anything.
     pub experiment: Option<Experiment>,

@@ -125,15 +125,14 @@ impl Evidence {
         Ok(machine)
     }
 
-    /// The logs balanced anew where dry friction was found that is larger than the axis file's own: beside reversals it changes faster
-    /// than the low-passed motion shows, and its level says which samples that spoils. `None` too where so few samples are left that
-    /// there is no balance.
+    /// The logs balanced anew where effects add more dry friction than the axis file states: which samples beside reversals are used
+    /// depends on its level. `None` too if so few samples are left that there is no balance.
     fn resolved(&self, machine: &Axis, found: &Found) -> Option<Self> {
         if !self.fit.is_balanced() {
             return None;
         }
         let [own, added] = dry_friction(machine, &found.fit.state.effects);
-        if added <= own || added <= 0.0 {
+        if added <= own {
             return None;
         }
         let machine = machine.clone().with_dry_friction(own + added).ok()?;

@@ -40,6 +40,12 @@ impl LogSet {
         };
         IMMATERIAL * rms(self.logs.iter().flat_map(one))
     }
+
+    /// Whether residuals of these RMS, one a channel, are immaterial in all channels.
+    pub(crate) fn is_immaterial(&self, machine: &Axis, sizes: &[f64]) -> bool {
+        let mut channels = sizes.iter().enumerate();
+        channels.all(|(c, size)| *size <= self.immaterial(machine, c))
+    }
 }
 
 /// By how much a simulation may be off in a channel, RMS.

@@ -129,8 +129,8 @@ impl<'a> Remainder<'a> {
 
 /// Whether the residual of logs is small beside what each of their channels shows.
 fn is_immaterial(machine: &Axis, set: &LogSet, gap: &Gap) -> bool {
-    let mut channels = gap.channels.iter().enumerate();
-    channels.all(|(c, gap)| gap.after <= set.immaterial(machine, c))
+    let sizes: Vec<f64> = gap.channels.iter().map(|channel| channel.after).collect();
+    set.is_immaterial(machine, &sizes)
 }
 
 /// The gap, were its residual taken for noise although that is above its floor: not where something else is known of

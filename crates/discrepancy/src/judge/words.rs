@@ -98,7 +98,7 @@ fn unknown(unknown: &Unknown, beside: bool) -> String {
         .iter()
         .fold(0.0_f64, |most, v| most.max(v.abs()));
     let size = match curve.unit.as_str() {
-        // Beside effects a curve goes with other values of theirs: its own size is not what is left.
+        // Beside named effects the curve is fitted together with their parameters, so its size is not that of the residual.
         _ if beside => String::new(),
         // A ratio of spectra, say, is for the picture.
         "N" | "N*m" | "m" | "rad" => {

@@ -31,8 +31,7 @@ struct Family {
     at: fn(&ActiveEffect, f64) -> f64,
     /// Share of the onset that comes with speed instead of displacement.
     with_speed: fn(&ActiveEffect) -> f64,
-    /// The form that comes on with speed alone and lacks as much of the sliding friction, ∫(1 − u') dv, which is what logs show
-    /// first; `None` of a family that has none.
+    /// See [`FrictionForm::whole`]; `None` of a family without such a form.
     whole: fn(&ActiveEffect) -> Option<ActiveEffect>,
     /// Speeds between which it differs from the law of the library.
     speeds: fn(&ActiveEffect) -> [f64; 2],
@@ -114,8 +113,8 @@ impl<'a> FrictionForm<'a> {
         (self.family.at)(self.active, speed)
     }
 
-    /// Another start of a search: the form of its family that comes on with speed alone and lacks as much of the sliding friction,
-    /// ∫(1 − u') dv. That is what logs show first, and share and speed of an onset may be anything beside it.
+    /// Another start of a search: the form of its family that comes on with speed alone and has the same ∫(1 − u') dv. Logs determine
+    /// this integral well, but share and speed separately only if they show the slowest motion.
     pub fn whole(&self) -> Option<ActiveEffect> {
         (self.family.whole)(self.active)
     }

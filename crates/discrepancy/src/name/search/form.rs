@@ -125,15 +125,15 @@ impl Search<'_> {
         screened.flatten().flatten().flatten().collect()
     }
 
-    /// Adds the effects that explain most, each with the form of a friction that explains most beside it, where a form explains
-    /// nearly as much as any: what an onset of another form leaves hides them, and each of them part of that.
-    pub(super) fn add_beside_forms(&self, refined: &mut Vec<Refined>) {
+    /// The candidates and, where a form explains nearly as much as any, the effects that explain most, each with the form that
+    /// explains most beside it: the residual of an onset of another form hides effects, and each effect hides part of that residual.
+    pub(super) fn with_those_beside_forms(&self, mut refined: Vec<Refined>) -> Vec<Refined> {
         let most = |is: &dyn Fn(&Refined) -> bool| {
             let gains = refined.iter().filter(|r| is(r)).map(|r| r.gain);
             gains.fold(0.0, f64::max)
         };
         if most(&Refined::is_form) < NEAR * most(&|_| true) {
-            return;
+            return refined;
         }
         let singles = refined
             .iter()
@@ -159,6 +159,7 @@ impl Search<'_> {
         }
         refined.extend(pairs);
         refined.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        self.simplest_first(refined)
     }
 
     /// Fits each form anew in all families: which one it is shows once the effects beside it are there.
@@ -186,21 +187,16 @@ impl Search<'_> {
         let is_of_base = |a: &ActiveEffect| is_form(a) && base_of(a) == base;
         let index = effects.iter().position(is_of_base)?;
         let present = effects[index].clone();
-        let mut without = self.clone();
-        let mut state = self.fit.state.clone();
-        for place in state.remove(index) {
-            without.named.remove(place);
-        }
-        // All else stays as it is: it was fitted beside the form, and a friction in no form would lead it away.
-        without.fit = self.fitter().at(state).ok()?;
-        without.check = self.checker().at(without.fit.state.clone()).ok()?;
+        // All else stays as it is: it was fitted beside the form, and without one it would move away.
+        let mut without = self.taken_out(index, 0)?;
         let own = without.own_columns();
+        let weights = (without.fit_logs.layout).spectral_matrices(&without.fit.rest);
         let mut others = without.forms(&own);
         others.retain(|s| base_of(&s.active()) == base);
         let others = others.into_iter().map(|form| vec![form]).collect();
         let mut all = without.refine(others, &own).kept;
         all.push(Refined {
-            parts: vec![without.screened_as(present.clone(), &own)?],
+            parts: vec![without.screened_as(present.clone(), &own, &weights)?],
             gain: without.fit.deviance - self.fit.deviance,
             fit: self.fit.clone(),
         });
@@ -261,7 +257,8 @@ impl Refined {
             let mut parameters = p.effect.parameters.iter();
             parameters.any(|p| matches!(p.nature, Nature::Speed(..)))
         };
-        self.has_form() && self.parts.iter().any(has_speed)
+        let mut forms = (self.parts.iter()).filter(|p| FrictionForm::is_one(p.effect.name));
+        forms.any(has_speed)
     }
 
     /// Whether it has a form, or is a friction that is another one in another form: slip with a

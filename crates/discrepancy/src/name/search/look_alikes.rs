@@ -63,7 +63,12 @@ impl Search<'_> {
         };
         rivals.retain(|parts: &Vec<Screened>| is_rival(&parts[0]));
         rivals.truncate(self.settings.refined);
-        let own = without.screened_as(self.fit.state.effects[index].clone(), &own_columns)?;
+        let weights = match &without.steady {
+            Some(_) => promises.of_noise().to_vec(),
+            None => without.fit_logs.layout.spectral_matrices(&without.fit.rest),
+        };
+        let itself = self.fit.state.effects[index].clone();
+        let own = without.screened_as(itself, &own_columns, &weights)?;
         let mut of_all = without.refine(rivals, &own_columns);
         // What does not hold on other motion is no second explanation.
         of_all.kept.retain(|rival| {

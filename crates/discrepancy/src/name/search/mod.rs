@@ -105,7 +105,7 @@ fn searched(
     });
     let mut search = begun.search(machine, settings, library)?;
     let without = search.clone();
-    while search.effects_named() < settings.most_effects {
+    while search.effects_named() < settings.most_effects && search.is_worth_it() {
         progress(&format!("effect {}", search.effects_named() + 1));
         if !search.add_next() {
             break;

@@ -220,14 +220,17 @@ impl Search<'_> {
         }
     }
 
-    /// An effect that was taken out, screened with its own shapes, which as the order of a torque may not be the library's.
-    pub(super) fn screened_as(&self, active: ActiveEffect, own: &Columns) -> Option<Screened> {
-        let noise = self.steady.as_ref().and_then(|_| self.noise());
-        let matrices =
-            (self.fit_logs.layout).spectral_matrices(noise.as_ref().unwrap_or(&self.fit.rest));
+    /// An effect that was taken out, screened with its own shapes, which as the order of a torque may not be the library's; weighed
+    /// by these spectral matrices.
+    pub(super) fn screened_as(
+        &self,
+        active: ActiveEffect,
+        own: &Columns,
+        matrices: &[Spectral],
+    ) -> Option<Screened> {
         let itself = [self.candidate(active.effect, active.values)];
         let fitter = self.fitter();
-        let screening = Screening::new(&fitter, &self.fit, own, &itself, &matrices, |_| true);
+        let screening = Screening::new(&fitter, &self.fit, own, &itself, matrices, |_| true);
         screening.one_by_one().pop()
     }
 

@@ -193,13 +193,18 @@ impl Search<'_> {
 
     /// Without one effect, the others and known parameters fitted again.
     pub(super) fn without(&self, index: usize) -> Option<Self> {
+        self.taken_out(index, 4)
+    }
+
+    /// Without one effect and its forms, the others and known parameters fitted again in so many rounds.
+    pub(super) fn taken_out(&self, index: usize, rounds: usize) -> Option<Self> {
         let mut without = self.clone();
         let mut state = self.fit.state.clone();
         for place in state.remove(index) {
             without.named.remove(place);
         }
         let start = self.fitter().at(state).ok()?;
-        without.fit = self.fitter().refine(start, &self.known, 4);
+        without.fit = self.fitter().refine(start, &self.known, rounds);
         without.check = self.checker().at(without.fit.state.clone()).ok()?;
         Some(without)
     }

@@ -13,9 +13,10 @@ use super::refined::{
 use super::state::Search;
 use super::types::{Named, RunnerUp};
 use super::unseen::may_end_unseen;
+use crate::answers::LogSet;
 use crate::estimate::columns::{Columns, free_parameters};
 use crate::estimate::fit::Fit;
-use crate::name::gap::{differ_immaterially, is_material};
+use crate::name::gap::{differ_immaterially, is_material, sizes};
 use crate::name::library::is_force_in_time;
 use crate::name::screen::{Screened, Screening};
 
@@ -31,6 +32,15 @@ const STANDING: &str = "constant-load";
 const LED_FURTHER: usize = 4;
 
 impl Search<'_> {
+    /// Whether more is left in some log than is immaterial, or a name is awaited.
+    pub(super) fn is_worth_it(&self) -> bool {
+        let sets = [(&self.fit_logs, &self.fit), (&self.check_logs, &self.check)];
+        let is_small = |(set, fit): (&LogSet, &Fit)| {
+            set.is_immaterial(self.machine, &sizes(set, &set.rest(&fit.traces)))
+        };
+        !(self.awaited().is_empty() && sets.into_iter().all(is_small))
+    }
+
     /// Adds the effect that explains most of what is left, or two that explain
     /// together what none does alone; false where none proves itself.
     pub(super) fn add_next(&mut self) -> bool {
@@ -45,8 +55,7 @@ impl Search<'_> {
         };
         let mut of_all = self.refine(candidates, &own);
         if awaited.is_empty() {
-            self.add_beside_forms(&mut of_all.kept);
-            of_all.kept = self.simplest_first(of_all.kept);
+            of_all.kept = self.with_those_beside_forms(of_all.kept);
         }
         let refined = &mut of_all.kept;
         self.effects_before_forms(refined);
@@ -250,7 +259,7 @@ impl Search<'_> {
     }
 
     /// Moves the simplest of those that explain about as much as the best to the front.
-    fn simplest_first(&self, mut refined: Vec<Refined>) -> Vec<Refined> {
+    pub(super) fn simplest_first(&self, mut refined: Vec<Refined>) -> Vec<Refined> {
         if let Some(at) = self.simplest_of_best(&refined, NEAR, enough) {
             refined[..=at].rotate_right(1);
         }
