@@ -192,6 +192,7 @@ fn a_mapping_is_proposed_by_names_and_their_units() {
         // None of these, or of another dimension than the quantity.
         ("following error [mm]", None),
         ("position_m", None),
+        ("id_a", None),
         ("torque [mm]", None),
         ("position [parsec]", None),
         ("temperature", None),

@@ -97,8 +97,8 @@ pub(crate) fn fit(figure: &Figure, canvas: Canvas) -> (Fitted, Fitted) {
         let [x, y] = [all(|s| &s.x).collect(), all(|s| &s.y).collect()];
         return square(figure, canvas, [x, y]);
     }
-    // Dots on the frame would be cut in half, so only lines end at the frame.
-    let tight = figure.series.iter().all(|s| s.style != Style::Dots);
+    // Dots on the frame would be cut in half, so only lines end at the frame. Figures that share an axis all end there.
+    let tight = !figure.linked.is_empty() || figure.series.iter().all(|s| s.style != Style::Dots);
     let y = match &figure.rows[..] {
         [] => {
             let (unit, ticks) = (Unit::parse(&figure.y_unit), canvas.height / 55.0);

@@ -209,6 +209,9 @@ fn a_fitted_axis_file_predicts_the_log() {
         text.contains("Held out: the last 25 %, 7 readings"),
         "{text}"
     );
+    // A file that people edit is not written over unasked.
+    let over = ["heat", "--axis", SCREW, "--fit", &log, "--out", &out];
+    assert!(refuse(&over).contains("--force"));
     // Fitted again: one such head, and the comments of the first file below it.
     let again = folder.path().join("again.toml").display().to_string();
     found(&["--axis", &out, "--fit", &log, "--out", &again]);

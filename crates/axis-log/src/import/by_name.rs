@@ -15,7 +15,9 @@ use crate::unit_table::{PERCENT, known};
 
 /// What each column seems to be.
 pub(super) fn proposed(heads: &[&Head]) -> Vec<Found> {
-    let mut found: Vec<Found> = heads.iter().filter_map(|head| one(head)).collect();
+    let found = heads.iter().filter_map(|head| one(head));
+    let is_new = |found: &Found| found.column.source != found.column.channel;
+    let mut found: Vec<Found> = found.filter(is_new).collect();
     // The first column of a channel counts: one that need not be converted from RMS.
     found.sort_by_key(|found| found.column.factor.is_some());
     found

@@ -27,10 +27,20 @@ pub(super) fn effects(
     effects: &[&'static Effect],
 ) -> Result<Vec<ActiveEffect>, AxisFileError> {
     let scales = Scales::of(axis);
+    // A search of logs takes the speed that these show (`Axis::fastest`), which may be far from what acceleration and stroke let expect.
+    let speeds: &[f64] = match axis.trajectories.is_empty() {
+        true => &[0.01, 1.0, 100.0],
+        false => &[1.0],
+    };
+    let bounds = |p: &EffectParameter| {
+        let all = speeds.iter().map(|by| p.bounds(&scales.faster(*by)));
+        all.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [low, high]| {
+            [a.min(low), b.max(high)]
+        })
+    };
     let names = || effects.iter().map(|effect| effect.name);
     let keys = |parameters: &mut dyn Iterator<Item = &EffectParameter>| -> Vec<Key> {
-        let parameter =
-            |p: &EffectParameter| Key::of_effect(p.name, p.unit(&scales), p.bounds(&scales));
+        let parameter = |p: &EffectParameter| Key::of_effect(p.name, p.unit(&scales), bounds(p));
         std::iter::once(Key::of_words("name", names().collect()))
             .chain(parameters.map(parameter))
             .collect()

@@ -1,6 +1,6 @@
 //! Effects vanish at their null value, to the bit, and do something elsewhere.
 
-use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, EffectNeed, Nature, Scales};
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, EffectNeed, Measure, Nature, Scales};
 use axis_sim::{Axis, LoggedReference, Replay, Trace};
 use trajectories::Motion;
 
@@ -318,6 +318,32 @@ fn effects_stand_in_the_axis_file() {
     let bad = with.replace("name = \"backlash\"", "nmae = \"backlash\"");
     let error = Axis::parse("bad.toml", &bad).unwrap_err().to_string();
     assert!(error.contains("did you mean `name`?"), "{error}");
+}
+
+/// What a search may find at the speed of logs, where the file says nothing of speed, stands in the file that it writes.
+#[test]
+fn an_effect_in_proportion_to_the_speed_of_logs_is_read() {
+    let text = std::fs::read_to_string(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../data/axes/emps.toml"
+    ))
+    .unwrap();
+    let mut axis = Axis::parse("axis.toml", &text).unwrap();
+    assert!(axis.trajectories.is_empty());
+    let expected = 0.12 * Scales::of(&axis).ratio(Measure::Speed);
+    for by in [0.02, 1.0, 50.0] {
+        axis.fastest = Some(by * expected);
+        let scales = Scales::of(&axis);
+        for effect in fitting(&axis) {
+            for edge in [0, 1] {
+                let values = effect.parameters.iter().map(|p| p.bounds(&scales)[edge]);
+                let values = values.collect();
+                let entry = ActiveEffect { effect, values }.entry(&scales, |v| format!("{v:e}"));
+                let read = Axis::parse("axis.toml", &format!("{text}{entry}"));
+                assert!(read.is_ok(), "{by}: {} {:?}", effect.name, read.err());
+            }
+        }
+    }
 }
 
 #[test]

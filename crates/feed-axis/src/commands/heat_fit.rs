@@ -12,6 +12,7 @@ use serde::Serialize;
 use super::heat_slow::{Options, of_log, slow_log};
 use super::moved_file::moved;
 use crate::context::read_text;
+use crate::out_file::spare;
 use crate::output::{print, ready, write_whole};
 use crate::program;
 use crate::set_key::{SetKey, with_keys};
@@ -28,6 +29,9 @@ pub(super) struct Given<'a> {
 /// Runs the fit.
 pub(super) fn command(given: &Given<'_>, options: &Options) -> Result<()> {
     let held_out = options.held_out()?;
+    if let Some(out) = &options.out {
+        spare(out, options.force.force)?;
+    }
     let reading = options.reading(given.duties, given.air);
     let logs: Vec<_> = (options.fit.iter())
         .map(|file| slow_log(given.axis, file))

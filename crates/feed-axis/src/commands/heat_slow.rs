@@ -14,7 +14,7 @@ use trajectories::Program;
 
 use super::heat_time::time;
 use crate::exit::wrong_use;
-use crate::out_file;
+use crate::out_file::{self, Force};
 
 /// Group of the options that name logs: --fit and --predict.
 const LOGS: &str = "slow-logs";
@@ -38,6 +38,8 @@ pub(super) struct Options {
     /// Where to write: with --fit the axis file, with --predict the log with growth (.csv, .parquet or .mat)
     #[arg(long, value_name = "FILE", value_parser = out_file::file(), requires = LOGS)]
     pub(super) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) force: Force,
     /// Last part of each log that is not fitted but predicted, %
     #[arg(
         long,

@@ -229,7 +229,15 @@ fn pictures(overlays: &[Overlay]) -> Section {
     let figure = |o: &Overlay| {
         let most = o.before.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
         let unit = ReadUnit::of_channel(&o.channel, most);
-        let series = |name, gap: &[f64]| Series::line(name, o.time.clone(), read(gap, &unit));
+        // No line over samples that are left out of a torque balance.
+        let is_whole = is_whole(&o.time);
+        let series = |name, gap: &[f64]| {
+            let (time, gap) = (o.time.clone(), read(gap, &unit));
+            match is_whole {
+                true => Series::line(name, time, gap),
+                false => Series::dots(name, time, gap),
+            }
+        };
         let log = o.title.trim_end_matches(&o.channel);
         let name = words(&o.channel);
         Figure::new(
@@ -250,6 +258,13 @@ fn pictures(overlays: &[Overlay]) -> Section {
     Section::new("The gap before and after, on motion not used in the fit")
         .paragraph("Before: known parameters moved within their tolerances, no effect added. After: with the named effects.")
         .figure_grid(overlays.iter().map(figure).collect(), 2)
+}
+
+/// Whether no sample is left out between others.
+fn is_whole(time: &[f64]) -> bool {
+    let steps = || time.windows(2).map(|pair| pair[1] - pair[0]);
+    let shortest = steps().fold(f64::INFINITY, f64::min);
+    steps().all(|step| step < 1.5 * shortest)
 }
 
 fn dependences(all: &[Against]) -> Section {

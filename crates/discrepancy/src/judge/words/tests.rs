@@ -1,5 +1,6 @@
 //! What a first screen says of made discoveries.
 
+use super::RIGHT;
 use crate::controller::OwnController;
 use crate::judge::assess::remedies;
 use crate::judge::assessment::{Confidence, Level};
@@ -148,6 +149,39 @@ fn an_effect_is_told_with_its_cost_confidence_and_remedy() {
         next[0].contains("speed-proportional torque feed-forward"),
         "{next:?}"
     );
+}
+
+/// The figures are those of the pages that `docs/laws/score.py` made.
+#[test]
+fn names_of_a_torque_balance_are_said_with_how_often_such_names_were_right() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/outcomes");
+    let pages = [17, 18]
+        .map(|seed| std::fs::read_to_string(format!("{folder}/laws-seed-{seed}.md")).unwrap());
+    for (level, counted) in [Level::Low, Level::Medium, Level::High]
+        .into_iter()
+        .zip(RIGHT)
+    {
+        let line = format!("names given with {} confidence: ", level.word());
+        let numbers = |page: &String| -> [usize; 2] {
+            let (_, rest) = page.split_once(&line).unwrap();
+            let (right, rest) = rest.split_once(" of ").unwrap();
+            let (of, _) = rest.split_once(' ').unwrap();
+            [right, of].map(|n| n.parse().unwrap())
+        };
+        let [a, b] = [numbers(&pages[0]), numbers(&pages[1])];
+        assert_eq!(counted, [a[0] + b[0], a[1] + b[1]], "{line}");
+    }
+    let mut made = discovery(Verdict::Explained, vec![viscous()], Vec::new());
+    let says = |made: &Discovery| {
+        let sure = lines(made, "How sure");
+        sure.iter()
+            .any(|line| line.starts_with("Names with this confidence were right in "))
+    };
+    assert!(!says(&made));
+    made.answer = "torque-balance".to_owned();
+    assert!(says(&made));
+    made.effects.clear();
+    assert!(!says(&made));
 }
 
 #[test]
