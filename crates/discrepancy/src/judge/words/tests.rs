@@ -424,10 +424,8 @@ fn a_torque_balance_has_no_tracking_error() {
     made.assessment.cost.tracking = None;
     assert!(lines(&made, "What it costs")[0].starts_with("The tracking error is not known"));
     let sure = lines(&made, "How sure");
-    assert!(
-        sure[3].starts_with("Compared by torque balance"),
-        "{sure:?}"
-    );
+    let says = |line: &String| line.starts_with("Compared by torque balance");
+    assert!(sure.iter().any(says), "{sure:?}");
 }
 
 #[test]
