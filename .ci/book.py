@@ -209,13 +209,32 @@ def site(mdbook):
     if done.returncode or re.search(r"\b(WARN|ERROR)\b", said):
         sys.exit(said)
     # print.html is all pages in one; 404.html has a base of its own.
-    files = {file: Page(file) for file in sorted(BOOK.rglob("*.html")) if file.name not in ("print.html", "404.html")}
+    built = [file for file in sorted(BOOK.rglob("*.html")) if file.name not in ("print.html", "404.html")]
+    for file in built:
+        point_at_repository(file)
+    files = {file: Page(file) for file in built}
     faults = [f"{file.relative_to(BOOK)}: {fault}" for file, page in files.items() for fault in broken(file, page, files)]
     faults += [f"README.md: {fault}" for fault in broken_readme()]
     if faults:
         sys.exit("\n".join(faults))
     links = sum(len(page.links) for page in files.values())
     print(f"{BOOK / 'index.html'}: {len(files)} pages, {links} links, none broken")
+
+
+def point_at_repository(file):
+    """Links that leave the folder of the pages lead to the repository's files from where the book is built."""
+    page = ROOT / "docs" / file.relative_to(BOOK)
+
+    def pointed(found):
+        path, mark, place = found[1].partition("#")
+        to = (page.parent / unquote(path)).resolve()
+        # mdbook takes every page for one of the book.
+        there = [to, to.with_suffix(".md")]
+        target = next((one for one in there if one.is_file() and ROOT / "docs" not in one.parents), None)
+        return found[0] if target is None else f'href="{os.path.relpath(target, file.parent)}{mark}{place}"'
+
+    text = file.read_text()
+    file.write_text(re.sub(r'href="((?!https?:|mailto:|#)[^"]+)"', pointed, text))
 
 
 def broken(file, page, files):
