@@ -292,7 +292,7 @@ fn likenesses(discovery: &Discovery) -> Section {
         "Every effect of the library on the fit motion",
         ["Effect", "detection limit, about", "its response is reproduced by"],
     )
-    .note("Detection limit: the size that the search would name despite noise and uncertain known parameters, if the response is linear; a dash if an effect has several sizes, or if ten times its typical size would not show. What does less than 0.2 % of what each channel shows (of a position: of the tracking error) is not named, whatever its limit. In brackets the sine of the largest angle between the two responses; below 0.15 they form one class.");
+    .note("Detection limit: the size that the search would name despite noise and uncertain known parameters, if the response is linear; a dash if an effect has several sizes, or if ten times its typical size would not show. While the residual is within 0.2 % of what each channel shows (of a position: of the tracking error), nothing is named, whatever the limits. In brackets the sine of the largest angle between the two responses; below 0.15 they form one class.");
     for l in &discovery.likenesses {
         let shown = l.shown_from.as_ref().map_or("–".to_owned(), |s| {
             ReadUnit::of_parameter(&s.parameter, &s.unit, s.value).said(s.value)

@@ -135,6 +135,9 @@ impl Search<'_> {
             }
             let check = self.checker().at(candidate.fit.state.clone()).ok()?;
             let held_out = self.check.deviance - check.deviance;
+            if is_effect && self.is_out_of_phase(candidate, &check, held_out) {
+                return None;
+            }
             if is_open {
                 if !self.holds(candidate, &check) {
                     return None;

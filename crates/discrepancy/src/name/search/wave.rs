@@ -12,7 +12,9 @@ use super::lines::{Line, duration, strongest};
 use super::refined::Refined;
 use super::state::Search;
 use crate::answers::Prepared;
-use crate::estimate::columns::Columns;
+use crate::estimate::columns::{Columns, free_parameters};
+use crate::estimate::fit::Fit;
+use crate::estimate::thin::Thin;
 use crate::name::library::Candidate;
 use crate::name::screen::Screened;
 use crate::spectrum::share_of_wave;
@@ -34,6 +36,11 @@ const HELD_OUT_OF_WAVE: f64 = 0.5;
 
 /// Share of the speed's power in a wave from which the motion is that wave: most of it.
 const DRIVEN: f64 = 0.5;
+
+/// Fall of D on check logs by another amplitude and phase there, beside which a hum is no load: of two
+/// numbers by chance, or this share of what the load brings, which is a phase off by 13 degrees.
+const OTHER_PHASE: f64 = 25.0;
+const SHARE_OF_PHASE: f64 = 0.05;
 
 impl Search<'_> {
     /// Loads that repeat with the strongest lines of the rest, beside the derivatives of the
@@ -109,5 +116,33 @@ impl Search<'_> {
         };
         let mut added = candidate.added().iter();
         added.any(|a| a.effect.name == REPEATS && is_driven(1.0 / a.values[PERIOD]))
+    }
+
+    /// Whether a candidate is a load that would repeat faster than motion does, and has another phase or
+    /// size on check logs, where its fall of D is `held_out`: noise may hum, with a phase of its own in each log.
+    pub(super) fn is_out_of_phase(&self, candidate: &Refined, check: &Fit, held_out: f64) -> bool {
+        let effects = &check.state.effects;
+        let new = effects.iter().enumerate().rev();
+        let mut new = new.take(candidate.parts.len());
+        let Some((place, load)) = new.find(|(_, a)| a.effect.name == REPEATS) else {
+            return false;
+        };
+        let set = &self.check_logs;
+        let motion = set.layout.bands().next().map_or(0.0, |([_, high], _)| high);
+        if load.values[PERIOD] * motion > 1.0 {
+            return false;
+        }
+        let numbers = free_parameters(&check.state);
+        let is_own = |(effect, parameter): (usize, usize)| effect == place && parameter != PERIOD;
+        let columns = self.checker().effect_columns(check, 0);
+        let own = columns.into_iter().zip(numbers);
+        let own: Columns = own.filter(|(_, n)| is_own(*n)).map(|(c, _)| c).collect();
+        let whitener = (set.layout).whitener(&set.layout.spectral_matrices(&check.rest));
+        let white = |a| set.layout.whiten(&whitener, a);
+        let thin = Thin::of(&own.iter().map(white).collect::<Vec<_>>());
+        let (rest, does) = (white(&check.rest), &thin.basis);
+        let other = does.tr_mul(&rest).norm_squared();
+        tracing::debug!(other, held_out, "of another phase on check logs");
+        other > OTHER_PHASE.max(SHARE_OF_PHASE * held_out)
     }
 }
