@@ -27,6 +27,10 @@ const INSTEAD: f64 = 0.9;
 /// does.
 const INSTEAD_OF_MEMORY: f64 = 0.6;
 
+/// Share of what slip with a memory and a level each way explain that it must explain with one
+/// level to be taken instead; what is a thirtieth of a gap is not named beside it either.
+const OF_ONE_LEVEL: f64 = 0.97;
+
 /// Effects that are tried together with a form.
 const BESIDE_FORMS: usize = 3;
 
@@ -96,6 +100,8 @@ impl Search<'_> {
         });
         let fitter = self.fitter();
         let scales = Scales::of(self.machine);
+        // One that ended as something simpler would do so again.
+        let forms = forms.filter(|form| !self.unseen.contains(&form.effect.name));
         let candidate = |form: ActiveEffect| Candidate {
             columns: responses(&fitter, &self.fit, form.effect, &form.values),
             effect: form.effect,
@@ -264,6 +270,12 @@ impl Refined {
         self.has_form() || self.parts.iter().any(with_memory) && others.into_iter().all(is_dry)
     }
 
+    /// Whether it is slip with a memory and another dry friction, and nothing else.
+    fn is_memory_beside(&self, other: &str) -> bool {
+        let has = |name: &str| self.parts.iter().any(|p| p.effect.name == name);
+        self.parts.len() == 2 && has(WITH_MEMORY) && has(other)
+    }
+
     /// Whether it has dry friction of one level alone.
     fn is_plain(&self) -> bool {
         self.parts.iter().all(|p| p.effect.name == PLAIN)
@@ -291,6 +303,19 @@ impl Refined {
                 .effects
                 .last()
                 .is_some_and(|a| a.values[0] < 0.0)
+    }
+}
+
+impl Refined {
+    /// Whether it takes sliding friction away and adds a fall from rest to it: together another
+    /// course of the axis' own friction over speed, and no two effects.
+    pub(super) fn bends_own_friction(&self) -> bool {
+        let effects = &self.fit.state.effects;
+        let is_friction = |a: &ActiveEffect| a.effect.name == FALL || DRY.contains(&a.effect.name);
+        let falls = |a: &ActiveEffect| a.effect.name == FALL && a.values[0] > 0.0;
+        let dry = effects.iter().filter(|a| DRY.contains(&a.effect.name));
+        let level: f64 = dry.flat_map(|a| &a.values).sum();
+        self.added().iter().any(is_friction) && effects.iter().any(falls) && level < 0.0
     }
 }
 
@@ -414,5 +439,18 @@ impl Search<'_> {
             "slip with a memory, and another in any form"
         );
         memory.gain > other.gain + form + BY_CHANCE
+    }
+}
+
+/// Own friction with a memory in place of a bristle before the same with another level each
+/// way, unless that explains clearly more: the two levels make up for what is not named yet.
+pub(super) fn own_before_directions(refined: &mut [Refined]) {
+    let Some(first) = refined.first().filter(|r| r.is_memory_beside(BY_DIRECTION)) else {
+        return;
+    };
+    let least = OF_ONE_LEVEL * first.gain;
+    let one_level = |r: &Refined| r.is_memory_beside(PLAIN) && r.gain >= least;
+    if let Some(at) = refined.iter().position(one_level) {
+        refined[..=at].rotate_right(1);
     }
 }

@@ -238,6 +238,7 @@ impl Begun {
             refused: None,
             untransferred: Vec::new(),
             within_error: Vec::new(),
+            unseen: Vec::new(),
             hum: self.hum,
             fit_logs: self.fit_logs,
             check_logs: self.check_logs,
@@ -280,6 +281,9 @@ impl Search<'_> {
             intervals = search.intervals()?;
         } else if let Some(refused) = search.refused(as_filed, without)? {
             search = without.clone().with_refused(refused);
+            intervals = search.intervals()?;
+        } else if search.lacks_evidence(without)? {
+            search = without.clone().with_leftover(&search.named);
             intervals = search.intervals()?;
         }
         Ok((search, intervals))

@@ -14,6 +14,10 @@ use crate::noise::{Hum, MotionAndRest, floors};
 /// must take away: what leaves more than half of it explains something else.
 const LEAST_SHARE: f64 = 0.5;
 
+/// Fall of D that is asked of a balance of which no channel stood out of its noise, as a multiple of
+/// what naming takes: the noise of its motion passes through the model, and looks like evidence.
+const WITHOUT_GAP: f64 = 1.5;
+
 impl Search<'_> {
     /// The effects, where check motion is further off with them than without: than with
     /// the machine as its file says (`as_filed`), or with its known parameters fitted
@@ -65,6 +69,22 @@ impl Search<'_> {
             effects: effects.collect(),
             reason: RefusalReason::Size(*ratio),
         })
+    }
+
+    /// Whether the effects of a balance of which no channel stood out of its noise bring less than
+    /// is asked then: as if nothing had been named.
+    pub(super) fn lacks_evidence(&self, without: &Self) -> Result<bool, ReplayError> {
+        let set = &self.check_logs;
+        if self.named.is_empty() || !set.is_balanced() || self.settings_ask_for_all() {
+            return Ok(false);
+        }
+        let after = set.rest(&self.check.traces);
+        let before = without.check_logs.rest(&without.check.traces);
+        let floors = floors(self.machine, set, &self.check.state, &after)?;
+        let fall = without.fit.deviance - self.fit.deviance;
+        let parameters = free_parameters(&self.fit.state).len();
+        let is_weak = fall < WITHOUT_GAP * self.needed(parameters, 1);
+        Ok(is_weak && !gap(set, &before, &after, &floors).stands_out())
     }
 
     /// Whether the 95 % intervals of all sizes of an effect hold zero.
@@ -119,7 +139,7 @@ impl Search<'_> {
     }
 
     /// With these as what was tried.
-    fn with_leftover(self, tried: &[Named]) -> Self {
+    pub(super) fn with_leftover(self, tried: &[Named]) -> Self {
         let runner_up = |n: &Named| RunnerUp {
             name: n.name,
             gain: n.evidence,

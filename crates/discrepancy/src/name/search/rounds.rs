@@ -4,6 +4,7 @@ use axis_sim::effects::Effect;
 use rayon::prelude::*;
 
 use super::evidence::{LEAST_EVIDENCE_SHARE, LEAST_HELD_OUT, WORSE, enough};
+use super::form::own_before_directions;
 use super::is_form::is_form;
 use super::promise::{PROMISING, Promises, WORTH};
 use super::refined::{
@@ -11,6 +12,7 @@ use super::refined::{
 };
 use super::state::Search;
 use super::types::{Named, RunnerUp};
+use super::unseen::may_end_unseen;
 use crate::answers::LogSet;
 use crate::estimate::columns::{Columns, free_parameters};
 use crate::estimate::fit::Fit;
@@ -59,6 +61,7 @@ impl Search<'_> {
         self.effects_before_forms(refined);
         single_before_pair(refined);
         inside_before_bound(refined);
+        own_before_directions(refined);
         let Some((place, check)) = self.first_proven(refined) else {
             let alone = refined
                 .iter()
@@ -66,7 +69,23 @@ impl Search<'_> {
             self.leftover = alone.map(Refined::runner_up).collect();
             return false;
         };
+        // All parameters move when an effect is added, and its own may end where it is another one.
+        let added = of_all.kept[place].added();
+        let may_end = awaited.is_empty() && added.iter().any(|a| may_end_unseen(a.effect));
+        let (before, count) = (may_end.then(|| self.clone()), added.len());
         self.add(&of_all, place, check, &screened);
+        if let Some(before) = before {
+            let new = self.fit.state.effects.iter().rev().take(count);
+            let unseen = new.filter(|active| self.is_unseen(active));
+            let unseen: Vec<&'static str> = unseen.map(|active| active.effect.name).collect();
+            if !unseen.is_empty() {
+                tracing::debug!(?unseen, "ended as a simpler effect");
+                *self = before;
+                self.unseen.extend(unseen);
+                return self.add_next();
+            }
+        }
+        self.unseen.clear();
         true
     }
 
@@ -381,6 +400,7 @@ impl Search<'_> {
     /// something, or it repeats as no such effect does.
     pub(super) fn cannot_be(&self, candidate: &Refined) -> bool {
         candidate.is_below_none(self.machine)
+            || candidate.bends_own_friction()
             || self.leaves_no_friction(candidate)
             || self.hardly_repeats(candidate)
             || self.repeats_with_the_drive(candidate)

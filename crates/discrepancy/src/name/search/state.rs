@@ -40,6 +40,8 @@ pub(super) struct Search<'a> {
     pub(super) untransferred: Vec<(Named, f64)>,
     /// What may be made of the error of the other effects' laws, and its share of what they do.
     pub(super) within_error: Vec<(&'static str, f64)>,
+    /// Effects that ended as a simpler one when they were added to what is named now.
+    pub(super) unseen: Vec<&'static str>,
     /// What was taken out of the logs.
     pub(super) hum: Hum,
     /// Root mean square of each channel's rest on the check logs before anything was named.
@@ -139,7 +141,8 @@ impl Search<'_> {
         // A second harmonic of the same kind may be there.
         let active = self.named.iter().any(|n| n.name == effect.name);
         let free = !active || effect.place_of(|n| n.is_order()).is_some();
-        free && !rejected
+        let unseen = self.unseen.contains(&effect.name);
+        free && !(rejected || unseen)
             && !self.doubles_a_friction(effect)
             && (awaited.is_empty() || awaited.contains(&effect.name))
     }

@@ -3,7 +3,7 @@
 //! A shape that ends at such a limit, or beyond all that logs show, is no second explanation beside
 //! the simpler effect, and no name: a body that swings faster than any motion is a mass.
 
-use axis_sim::effects::{ActiveEffect, Nature, Scales};
+use axis_sim::effects::{ActiveEffect, Effect, EffectParameter, Nature, Scales};
 
 use super::form::WITH_MEMORY;
 use super::state::Search;
@@ -25,6 +25,14 @@ impl Search<'_> {
             || hardly_remembers(active, own_way)
             || swings_as_fast(active, &scales, highest.fold(0.0, f64::max))
     }
+}
+
+/// Whether an effect may come to be no other than a simpler one.
+pub(super) fn may_end_unseen(effect: &Effect) -> bool {
+    let falls = |p: &EffectParameter| matches!(p.nature, Nature::Speed(..));
+    effect.name == WITH_MEMORY
+        || effect.place_of(is_frequency).is_some()
+        || effect.parameters.iter().any(falls)
 }
 
 /// Whether it is a friction that falls with a speed that is as high as it may be: over all of the
