@@ -36,6 +36,7 @@ fn off(value: f64, published: f64) -> f64 {
 }
 
 #[test]
+#[ignore = "slow: .ci/release.d/05-slow-tests.sh"]
 fn published_friction_of_a_real_stage_is_found_from_mass_and_viscous_friction_alone() {
     // Of nonlinearbenchmark.org.
     let Some(folder) = needs::named_or_shared("EMPS_DATA", "data/emps") else {

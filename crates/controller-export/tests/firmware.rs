@@ -187,53 +187,65 @@ fn a_trip_by_one_nan_is_taken_back() -> Outcome<()> {
     let predictors = laws::predictors(&samples::axis()?)?;
     for &name in EXPORTED {
         let controller = ExportedController::of(&predictors, name, laws::LIMITS)?;
-        for input in c::export(&controller, Precision::F64, None)?.inputs {
-            let member = input.name();
-            let main = r#"
+        let inputs = c::export(&controller, Precision::F64, None)?.inputs;
+        let members: Vec<&str> = inputs.iter().map(|input| input.name()).collect();
+        let main = r#"
 #include "law.h"
 #include <math.h>
 #include <stdio.h>
 static law x;
+static void spoil(law_input *in, int which)
+{
+    switch (which) {
+@CASES@
+    }
+}
 int main(void)
 {
-    law_input in;
-    law_output out = {0};
-    int k, on = 0, finite = 1, tripped = 0;
-    law_init(&x);
-    law_switch(&x, 1);
-    for (k = 0; k < 6000; k++) {
-        const law_input rest = {0};
-        in = rest;
-        if (k == 2000) {
-            in.@M@ = NAN;
+    int which, k;
+    for (which = 0; which < @COUNT@; which++) {
+        law_output out = {0};
+        int on = 0, finite = 1, tripped = 0;
+        law_init(&x);
+        law_switch(&x, 1);
+        for (k = 0; k < 6000; k++) {
+            law_input in = {0};
+            if (k == 2000) {
+                spoil(&in, which);
+            }
+            if (k == 3000) {
+                tripped = out.status >= 2;
+                law_switch(&x, 1);
+            }
+            law_step(&x, &in, &out);
+            finite = finite && isfinite(out.position) && isfinite(out.effort);
+            on += k >= 3000 && out.status == LAW_ON;
         }
-        if (k == 3000) {
-            tripped = out.status >= 2;
-            law_switch(&x, 1);
-        }
-        law_step(&x, &in, &out);
-        finite = finite && isfinite(out.position) && isfinite(out.effort);
-        on += k >= 3000 && out.status == LAW_ON;
+        printf("%d %d %d\n", on, finite, tripped);
     }
-    printf("%d %d %d\n", on, finite, tripped);
     return 0;
 }
 "#;
-            let main = main.replace("@M@", member);
-            let Some(said) = run(&main, &[(name, "law")], laws::LIMITS)? else {
-                return Ok(());
-            };
-            let [on, finite, tripped] = numbers(&said)[..] else {
+        let case = |(which, member)| format!("    case {which}: in->{member} = NAN; break;\n");
+        let cases: String = members.iter().enumerate().map(case).collect();
+        let main = main.replace("@CASES@", &cases);
+        let main = main.replace("@COUNT@", &members.len().to_string());
+        let Some(said) = run(&main, &[(name, "law")], laws::LIMITS)? else {
+            return Ok(());
+        };
+        assert_eq!(said.lines().count(), members.len(), "{said}");
+        for (&member, line) in members.iter().zip(said.lines()) {
+            let [on, finite, tripped] = numbers(line)[..] else {
                 return Err(said.into());
             };
-            assert_eq!((on, finite), (3000.0, 1.0), "{name}, {member}: {said}");
+            assert_eq!((on, finite), (3000.0, 1.0), "{name}, {member}: {line}");
             // A plan reads the command, and a filter the acceleration of now, at their beginning alone;
             // a feedback goes on without a sample.
             let noticed = match name {
                 "plan" | "feedback" => member.starts_with("ahead"),
                 _ => member != "reference_acceleration",
             };
-            assert_eq!(tripped == 1.0, noticed, "{name}, {member}: {said}");
+            assert_eq!(tripped == 1.0, noticed, "{name}, {member}: {line}");
         }
     }
     Ok(())

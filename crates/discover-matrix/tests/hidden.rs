@@ -97,6 +97,7 @@ fn find_on(motions: [Program; 2], hidden: [&Hidden; 2], settings: &Settings) -> 
 }
 
 #[test]
+#[ignore = "slow: .ci/release.d/05-slow-tests.sh"]
 fn nothing_is_missing_from_a_clean_axis() {
     let found = find(&hide(None, 11), &Settings::default());
     assert_eq!(found.verdict, Verdict::NothingMissing, "{found:?}");
@@ -140,6 +141,7 @@ fn slow_noise_is_not_named() {
 }
 
 #[test]
+#[ignore = "slow: .ci/release.d/05-slow-tests.sh"]
 fn backlash_is_named_and_measured() {
     let found = find(&hide(Some("backlash"), 12), &Settings::default());
     assert_eq!(found.effects.len(), 1, "{found:?}");
@@ -199,6 +201,7 @@ fn an_accepted_force_is_there_where_nothing_is_missing() {
 /// The sensors show as much too much as the motor makes more of a current: no torque is
 /// missing, and only the voltage tells. Each of the two alone leaves nearly everything.
 #[test]
+#[ignore = "slow: .ci/release.d/05-slow-tests.sh"]
 fn two_effects_that_nearly_cancel_are_both_named() {
     let both = vec![
         ("current-sensor-gain", vec![0.048]),
@@ -399,6 +402,7 @@ fn what_is_rejected_is_not_named() {
 /// What is missing may be as small as noise of another colour, and a cogging torque follows no motion as
 /// filters do: where nothing of the library may be named, neither is taken for such noise.
 #[test]
+#[ignore = "slow: .ci/release.d/05-slow-tests.sh"]
 fn what_is_missing_is_no_noise() {
     let settings = with_only(&[]);
     let hidden = [
@@ -452,6 +456,7 @@ fn a_body_that_swings_too_fast_to_be_seen_is_no_name() {
 /// explains as much (here 24 more of D, which chance may bring), and more of other motion, none of
 /// them is given.
 #[test]
+#[ignore = "slow: .ci/release.d/05-slow-tests.sh"]
 fn several_effects_do_not_stand_for_one_law() {
     let root = OUTSIDE.iter().find(|e| e.name == "root-friction").unwrap();
     let mut hidden = hide(None, 55);

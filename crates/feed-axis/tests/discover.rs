@@ -90,7 +90,9 @@ fn the_new_axis_file_is_the_machine_for_every_other_command() {
     std::fs::create_dir(&out).unwrap();
     let stale = format!("{out}/next-experiment.toml");
     std::fs::write(&stale, "").unwrap();
-    let said = succeed(&["discover", "--fit", &fit, "--check", &check, "--out", &out]);
+    // By balance, which takes a thirtieth of a replay's time.
+    let search = ["discover", "--balance", "--fit", &fit, "--check", &check];
+    let said = succeed(&[&search[..], &["--out", &out]].concat());
     assert!(said.contains("The model lacks viscous-friction."), "{said}");
     for number in said.split_whitespace().filter(|w| w.parse::<f64>().is_ok()) {
         assert!(digits(number) <= 6, "{number} in {said}");
@@ -122,8 +124,8 @@ fn the_new_axis_file_is_the_machine_for_every_other_command() {
         after.split(' ').next().unwrap().parse::<f64>().unwrap()
     };
     let (model, found, machine) = (run("data/axes/liu2025.toml"), run(&axis), run(machine));
-    // Micrometres; the interval of the friction is ± 0.11 %.
-    assert!((found - machine).abs() < 2e-3 * (machine - model).abs());
+    // Micrometres; the interval of the friction is ± 0.7 %.
+    assert!((found - machine).abs() < 7e-3 * (machine - model).abs());
     // Files that the axis file names are found from where the new one is.
     let experiment = Axis::read(axis.as_ref()).unwrap().experiment.unwrap();
     assert!(experiment.machine.is_file() && experiment.paper_tables.unwrap().is_dir());
@@ -138,8 +140,8 @@ fn the_new_axis_file_is_the_machine_for_every_other_command() {
         section.contains("The gap before and after"),
         "{section:.300}"
     );
-    assert!(page.contains("</b> 2.csv: position (position_m)"));
-    assert!(page.contains("log − model") && !page.contains("log − model: position_m"));
+    assert!(page.contains("</b> 2.csv: q current (iq_a)"));
+    assert!(page.contains("log − model") && !page.contains("log − model: iq_a"));
     // Of what is shown: coordinates of curves are data.
     let parts = page.split("<script");
     let shown: String = parts

@@ -84,9 +84,9 @@ fn an_export_is_not_written_over() {
     let axis = "data/axes/emps.toml";
     let plan = [
         "--axis",
-        "data/axes/belt.toml",
+        "data/axes/rack.toml",
         "--strategy",
-        "feedback",
+        "plan",
         "--out",
     ];
     let commands = [
@@ -94,10 +94,10 @@ fn an_export_is_not_written_over() {
             of(&["drive", "--axis", axis, "--out", &drive]),
             "drive.json",
         ),
-        (of(&[&["c"][..], &plan, &[&code]].concat()), "feedback.c"),
+        (of(&[&["c"][..], &plan, &[&code]].concat()), "plan.c"),
         (
             of(&[&["linuxcnc"][..], &plan, &[&component]].concat()),
-            "feedback.hal",
+            "plan.hal",
         ),
     ];
     for (command, file) in commands {

@@ -16,12 +16,14 @@ fn logs_that_were_written_tell_the_same_again_and_feed_the_later_stages() {
     let folder = tempfile::tempdir().unwrap();
     let [made, given] = ["made", "given"].map(|name| folder.path().join(name));
     let [to_made, to_given] = [&made, &given].map(|path| path.to_str().unwrap());
-    succeed(&["identify", "--quick", "--out", to_made]);
+    // Cheap to simulate.
+    let axis = "data/axes/linear-stage.toml";
+    let identify = ["identify", "--quick", "--axis", axis, "--out"];
+    succeed(&[&identify[..], &[to_made]].concat());
     let logs = ["constant-speed.parquet", "pre-sliding.parquet"];
     let logs = logs.map(|name| made.join("identify").join(name).display().to_string());
-    let told = succeed(&[
-        "identify", "--quick", "--out", to_given, "--log", &logs[0], &logs[1],
-    ]);
+    let log = [to_given, "--log", &logs[0], &logs[1]];
+    let told = succeed(&[&identify[..], &log].concat());
     assert!(
         told.contains("95 %") && !told.contains("(simulated)"),
         "{told}"
@@ -39,6 +41,8 @@ fn logs_that_were_written_tell_the_same_again_and_feed_the_later_stages() {
     let simulate = [
         "simulate",
         "--quick",
+        "--axis",
+        axis,
         "--trajectory",
         "1",
         "--compensation",
@@ -47,7 +51,7 @@ fn logs_that_were_written_tell_the_same_again_and_feed_the_later_stages() {
     ];
     succeed(&[&simulate[..], &[to_given]].concat());
     // A run without logs is the simulated machine's again.
-    succeed(&["identify", "--quick", "--out", to_given]);
+    succeed(&[&identify[..], &[to_given]].concat());
     assert_eq!(friction(&given)["simulated"], true);
     assert!(!given.join("identify/logs.json").exists());
 }

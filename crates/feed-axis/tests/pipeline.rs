@@ -64,39 +64,62 @@ fn on_a_circle(runs: &str) {
     );
 }
 
-/// The whole pipeline, small: its figures against the project's targets, a
-/// second run that does nothing, another number of threads with the same
-/// figures, and damaged or foreign results refused.
+/// The whole pipeline of the paper's axis, small: its figures against the project's targets.
 #[test]
-fn the_quick_pipeline_meets_its_figures_and_guards_its_results() {
+fn the_quick_pipeline_meets_its_figures() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("liu2025");
     let out = out.to_str().unwrap();
     succeed(&["pipeline", "--quick", "--out", out]);
-    let summary = read(out);
-    check_figures(&summary);
+    check_figures(&read(out));
     on_a_circle(folder.path().to_str().unwrap());
     let page = std::fs::read_to_string(format!("{out}/report.html")).unwrap();
     assert!(page.len() > 100_000 && !page.contains("NaN"));
     assert!(page.contains("Margins of each case"));
     assert!(!page.contains("src=\"http") && !page.contains("href=\"http"));
+}
+
+const STAGE: &str = "data/axes/linear-stage.toml";
+
+/// A command of the small pipeline of another axis.
+fn on_the_stage<'a>(command: &'a str, out: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    [&[command, "--quick", "--axis", STAGE, "--out", out], more].concat()
+}
+
+/// A second run that does nothing, another number of threads with the same figures, and damaged or
+/// foreign results refused. The strategies that this axis cannot have are named, and the others stand
+/// in summary and report.
+#[test]
+fn a_pipeline_guards_its_results_and_names_what_its_axis_cannot_have() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("stage");
+    let out = out.to_str().unwrap();
+    let said = succeed(&on_the_stage("pipeline", out, &[]));
+    assert!(
+        said.contains("feedback: left out, this axis cannot have it"),
+        "{said}"
+    );
+    let summary = read(out);
+    without_feedback(out, &summary);
 
     // Nothing is run twice.
-    let again = succeed(&["pipeline", "--quick", "--out", out]);
+    let again = succeed(&on_the_stage("pipeline", out, &[]));
     assert_eq!(again.matches("up to date").count(), 6, "{again}");
     // The same as one document, by the stages' names.
-    let again = run(&["pipeline", "--quick", "--out", out, "--format", "json"]);
-    let again: Value = serde_json::from_slice(&again.stdout).unwrap();
+    let document = |command| -> Value {
+        let output = run(&on_the_stage(command, out, &["--format", "json"]));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let again = document("pipeline");
     assert_eq!(again["study"]["up_to_date"], true);
     assert_eq!(again["report"]["summary"], summary);
-    let identified = run(&["identify", "--quick", "--out", out, "--format", "json"]);
-    let identified: Value = serde_json::from_slice(&identified.stdout).unwrap();
+    let identified = document("identify");
     assert_eq!(identified["friction"]["parameters"][0]["name"], "T_C");
 
     // The same bits on one thread.
     let single = folder.path().join("single");
     let single = single.to_str().unwrap();
-    succeed(&["pipeline", "--quick", "--threads", "1", "--out", single]);
+    succeed(&on_the_stage("pipeline", single, &["--threads", "1"]));
     compare(out, single);
     let mut other = read(single);
     other["network"]["train_seconds"] = summary["network"]["train_seconds"].clone();
@@ -108,7 +131,7 @@ fn the_quick_pipeline_meets_its_figures_and_guards_its_results() {
     let mut flipped = whole.clone();
     flipped[whole.len() / 2] ^= 1;
     std::fs::write(&network, flipped).unwrap();
-    let message = refuse(&["compensate", "--quick", "--out", out]);
+    let message = refuse(&on_the_stage("compensate", out, &[]));
     assert!(
         message.contains("network.cfnn") && message.contains("feed-axis train"),
         "{message}"
@@ -117,31 +140,19 @@ fn the_quick_pipeline_meets_its_figures_and_guards_its_results() {
     let samples = format!("{out}/sample/training.samples");
     let whole = std::fs::read(&samples).unwrap();
     std::fs::write(&samples, &whole[..whole.len() - 7]).unwrap();
-    let message = refuse(&["train", "--quick", "--out", out]);
+    let message = refuse(&on_the_stage("train", out, &[]));
     assert!(message.contains("training.samples"), "{message}");
-    let other = "data/axes/liu2025-machine.toml";
+    let other = "data/axes/rack.toml";
     let message = refuse(&["compensate", "--quick", "--out", out, "--axis", other]);
     assert!(message.contains("another axis file"), "{message}");
 
     // The pipeline corrects what is damaged.
-    succeed(&["pipeline", "--quick", "--out", out]);
+    succeed(&on_the_stage("pipeline", out, &[]));
     assert_eq!(std::fs::read(&samples).unwrap(), whole);
 }
 
-/// For an axis that cannot have every strategy: the ones that were left out are named, the others stand in
-/// summary and report.
-#[test]
-fn a_pipeline_finishes_without_a_strategy_that_the_axis_cannot_have() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("run");
-    let out = out.to_str().unwrap();
-    let axis = "data/axes/linear-stage.toml";
-    let said = succeed(&["pipeline", "--quick", "--axis", axis, "--out", out]);
-    assert!(
-        said.contains("feedback: left out, this axis cannot have it"),
-        "{said}"
-    );
-    let summary = read(out);
+/// What summary and report say where an axis cannot have feedback.
+fn without_feedback(out: &str, summary: &Value) {
     // Of its only loop its file says 60°, which python-control agrees with; the least is with the heaviest load.
     let phase = summary["loops"]["model"]["phase_deg"].as_f64().unwrap();
     assert!((54.0..59.0).contains(&phase), "{phase}");
