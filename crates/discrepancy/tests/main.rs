@@ -12,4 +12,5 @@ mod over_speed;
 mod prediction;
 mod sensor_steps;
 mod settings;
+mod slow_noise;
 mod starts;

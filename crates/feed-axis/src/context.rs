@@ -56,6 +56,10 @@ pub struct Common {
 pub struct Context {
     /// The model.
     pub axis: Axis,
+    /// Its file.
+    pub axis_file: PathBuf,
+    /// The text of that, with the keys of `--set`.
+    pub axis_text: String,
     /// What stands for the measured machine.
     pub machine: Axis,
     /// Whether the machine is another file than the axis.
@@ -122,6 +126,8 @@ impl Common {
                 .unwrap_or_else(|| Path::new("runs").join(&axis.name)),
             has_machine: machine_file.is_some(),
             axis,
+            axis_text: with_keys(&read_text(&self.axis)?, &self.set)?,
+            axis_file: self.axis.clone(),
             machine,
             seed: self.seed,
             threads: self.threads,

@@ -301,6 +301,8 @@ mod tests {
         Context {
             machine: axis.clone(),
             axis,
+            axis_file: "liu2025.toml".into(),
+            axis_text: text.to_owned(),
             has_machine: false,
             out: out.to_owned(),
             seed: 1,

@@ -15,9 +15,7 @@ use crate::unit_table::{PERCENT, known};
 
 /// What each column seems to be.
 pub(super) fn proposed(heads: &[&Head]) -> Vec<Found> {
-    let found = heads.iter().filter_map(|head| one(head));
-    let is_new = |found: &Found| found.column.source != found.column.channel;
-    let mut found: Vec<Found> = found.filter(is_new).collect();
+    let mut found: Vec<Found> = heads.iter().filter_map(|head| one(head)).collect();
     // The first column of a channel counts: one that need not be converted from RMS.
     found.sort_by_key(|found| found.column.factor.is_some());
     found
@@ -47,10 +45,14 @@ pub(super) fn channel_of(channel: &str, dimension: &str) -> Option<&'static str>
     })
 }
 
+/// The d current's channel, which has its own words ([`OF_FIELD`]) beside those of currents.
+const FIELD_CURRENT: &str = "id_a";
+
 /// Whether a name is that of a channel already.
 fn is_channel(name: &str) -> bool {
     let all = QUANTITIES.iter().flat_map(|quantity| quantity.channels);
-    all.flat_map(|(_, names)| names).any(|own| *own == name)
+    let mut names = all.flat_map(|(_, names)| names);
+    name == FIELD_CURRENT || names.any(|own| *own == name)
 }
 
 /// A name that is not yet that of a channel, what it says, and its words.
@@ -149,7 +151,7 @@ fn meant(words: &Words, said: Option<Unit>) -> Option<Meant> {
         let is_it = unit.1 == "current" && !is_demanded && !words.has(NOT_OF_ROTOR);
         return is_it.then_some(Meant {
             quantity,
-            channel: "id_a",
+            channel: FIELD_CURRENT,
             unit,
         });
     }

@@ -20,15 +20,16 @@ const HALVINGS: usize = 5;
 /// more than one number brings by chance.
 pub(super) const BY_CHANCE: f64 = 25.0;
 
-/// Steps by which a held effort is moved to see where the log is more likely, the way downhill
-/// where three points do not show a minimum, and most that it is moved, as shares of the command's
-/// noise.
+/// Steps by which a held effort is moved to see where the log is more likely, and the way downhill
+/// where three points do not show a minimum, as shares of the command's noise.
 const STEP: f64 = 0.1;
 const STRIDE: f64 = 0.25;
-const REACH: f64 = 0.5;
+
+/// Strides are halved to this where a held effort was moved and three points show nothing better.
+const SHORTEST_STRIDE: f64 = 0.02;
 
 /// Parabolas at most.
-const PARABOLAS: usize = 5;
+const PARABOLAS: usize = 8;
 
 /// Fall of minus twice the log-likelihood below which it stays: one number by chance.
 const MOVED: f64 = 10.0;
@@ -144,13 +145,17 @@ impl LogSet {
 
     /// Moves what the drive holds at the start of each log, where that is the mean of a noisy or
     /// coarse command, to where the log is most likely beside this state: by parabolas through
-    /// three points, from where the last one led, by no more than [`REACH`] from what is shown.
+    /// three points, from where the last one led, by no more than its mean may be off from what is shown.
     ///
     /// # Errors
     /// [`ReplayError`] if the machine does not run.
     fn find_effort(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
-        let shown = self.efforts_shown(machine).into_iter();
-        let noise: Vec<f64> = shown.map(|s| s.map_or(0.0, |s| s.noise)).collect();
+        let shown = self.efforts_shown(machine);
+        let of = |value: fn(&EffortShown) -> f64| -> Vec<f64> {
+            let each = shown.iter().map(|s| s.as_ref().map_or(0.0, value));
+            each.collect()
+        };
+        let (noise, reach) = (of(|s| s.noise), of(|s| s.reach / s.noise));
         if noise.iter().all(|n| *n <= 0.0) {
             return Ok(());
         }
@@ -169,26 +174,44 @@ impl LogSet {
         };
         let mut moves = vec![0.0; noise.len()];
         let mut here = misfits(&moves)?;
+        let mut strides = vec![STRIDE; noise.len()];
         for _ in 0..PARABOLAS {
-            let beside = |by: f64| misfits(&moves.iter().map(|m| m + by).collect::<Vec<f64>>());
-            let (below, above) = (beside(-STEP)?, beside(STEP)?);
-            let to = |i: usize| {
-                let (slope, bend) = (above[i] - below[i], above[i] + below[i] - 2.0 * here[i]);
-                let by = match bend > 0.0 {
-                    true => -0.5 * STEP * slope / bend,
-                    false => -STRIDE * slope.signum(),
-                };
-                let to = (reached[i] + moves[i] + by).clamp(-REACH, REACH);
-                to - reached[i]
+            let inside = |i: usize, by: f64| {
+                let most = reach[i].max(0.0);
+                (reached[i] + moves[i] + by).clamp(-most, most) - reached[i]
             };
-            let next: Vec<f64> = (0..moves.len()).map(to).collect();
+            let steps: Vec<f64> = strides.iter().map(|by| STEP * by / STRIDE).collect();
+            let all =
+                |to: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..moves.len()).map(to).collect() };
+            let [below, above] = [-1.0, 1.0].map(|sign| all(&|i| inside(i, sign * steps[i])));
+            let [low, high] = [misfits(&below)?, misfits(&above)?];
+            let next = all(&|i| {
+                let (slope, bend) = (high[i] - low[i], high[i] + low[i] - 2.0 * here[i]);
+                inside(
+                    i,
+                    match bend > 0.0 {
+                        true => -0.5 * steps[i] * slope / bend,
+                        false => -strides[i] * slope.signum(),
+                    },
+                )
+            });
             let there = misfits(&next)?;
             let mut has_left = false;
-            for (i, after) in there.into_iter().enumerate() {
-                if here[i] - after > MOVED {
-                    // Beyond the three points the parabola knows nothing.
-                    has_left |= (next[i] - moves[i]).abs() > STEP;
-                    (moves[i], here[i]) = (next[i], after);
+            for i in 0..moves.len() {
+                let tried = [(next[i], there[i]), (below[i], low[i]), (above[i], high[i])];
+                let best = tried
+                    .into_iter()
+                    .fold(tried[0], |best, one| match one.1 < best.1 {
+                        true => one,
+                        false => best,
+                    });
+                if here[i] - best.1 > MOVED {
+                    // Beyond the three points the parabola knows nothing, and near a sharp minimum it is none.
+                    has_left |= (best.0 - moves[i]).abs() >= steps[i];
+                    (moves[i], here[i]) = best;
+                } else if moves[i] != 0.0 {
+                    strides[i] *= 0.5;
+                    has_left |= strides[i] > SHORTEST_STRIDE;
                 }
             }
             if !has_left {
@@ -215,7 +238,7 @@ impl LogSet {
     /// actuator's unit: none if its command is not coarse. `None` if no log's is.
     pub(crate) fn coarse_efforts(&self, machine: &Axis) -> Option<Vec<[f64; 2]>> {
         let room = |(log, shown): (&Prepared, Option<EffortShown>)| {
-            let most = REACH * shown.filter(|s| s.is_coarse)?.noise;
+            let most = shown.filter(|s| s.is_coarse)?.reach;
             let moved = effort_moved(log)?;
             Some([-most - moved, most - moved])
         };
@@ -302,7 +325,7 @@ mod tests {
     use compensator::NoCompensation;
     use trajectories::{Limits, Program, Step};
 
-    use super::{LogSet, REACH, State, effort_moved};
+    use super::{LogSet, State, effort_moved};
 
     /// The paper's axis under a load that its file does not have: whatever is held at the start makes
     /// up for a part of it, and is looked for beside each state that a search comes to.
@@ -338,12 +361,12 @@ mod tests {
         for _ in 0..4 {
             set.find_effort(&machine, &State::initial(&machine))
                 .unwrap();
-            let noise = set.efforts_shown(&machine)[0].unwrap().noise;
-            moved.push(effort_moved(&set.logs[0]).unwrap() / noise);
+            let reach = set.efforts_shown(&machine)[0].unwrap().reach;
+            moved.push(effort_moved(&set.logs[0]).unwrap() / reach);
         }
         println!("{moved:?}");
-        assert!(moved[0].abs() > 0.5 * REACH, "{moved:?}");
-        let most = REACH * (1.0 + 1e-9);
+        assert!(moved[0].abs() > 0.5, "{moved:?}");
+        let most = 1.0 + 1e-9;
         assert!(moved.iter().all(|by| by.abs() <= most), "{moved:?}");
     }
 }

@@ -10,8 +10,10 @@
 //! d(c) = 1 / (S⁻¹)cc − 1 / (N⁻¹)cc,
 //! ```
 //!
-//! with the matrix N of noise that is known, is the logger's, where the command shows less than
-//! half of its answer to as much, and that would stand out of the command's noise.
+//! with the matrix N of noise that is known, is the logger's, where another channel, its witness, shows less than
+//! half of its answer to as much, and that would stand out of the witness' noise. The command is the witness of
+//! the position and of the current. Of the command itself it is the position: a controller asks for no more than what
+//! it is shown makes it ask for.
 
 use axis_sim::{Axis, ClosedLoop, ReplayError, Trace};
 use nalgebra::{Complex, DMatrix};
@@ -35,10 +37,10 @@ const RUNS: u64 = 6;
 /// Times the noise beside the others that there must be of it.
 const STANDS_OUT: f64 = 1.5;
 
-/// Share of the command's own noise, which is known to a tenth, that its answer would be at least.
+/// Share of the witness' own noise, which is known to a tenth, that its answer would be at least.
 const WOULD_SHOW: f64 = 0.5;
 
-/// Share of the answer that the command may show by chance.
+/// Share of the answer that the witness may show by chance.
 const SHOWS: f64 = 0.5;
 
 /// That of these logs, beside simulations of them without noise.
@@ -77,23 +79,32 @@ pub(crate) fn slow_noise(
             .fold(first, |sum, run| sum + &run[b] * share)
     };
     let known: Vec<Matrix> = (0..runs[0].len()).map(mean).collect();
-    let position = place(&["position_m", "position_rad"]);
-    let of_position = spectra(&LogNoise::of_sensors(position_alone(&noise.sensors)), 1)?;
+    // What the position loop reads: of an axis without a sensor at the load the motor's angle.
+    let of_load = place(&["position_m", "position_rad"]);
+    let position = of_load.or_else(|| place(&["motor_angle_rad"]));
+    let alone = alone(&noise.sensors, of_load.is_some());
+    let of_position = spectra(&LogNoise::of_sensors(alone), 1)?;
     let seen = set.layout.spectral_matrices(&set.amplitudes(&rest));
+    // Of two channels, how much power the first shows for that of the second, of noise of the position.
+    let answer = |b: usize, [first, second]: [usize; 2]| {
+        let of = &of_position[b];
+        of[(first, first)].re / of[(second, second)].re.max(f64::MIN_POSITIVE)
+    };
     let of = |c: usize| -> Vec<f64> {
+        let witness = match position {
+            Some(position) if c == command => position,
+            _ => command,
+        };
         let bands = set.layout.bands().enumerate();
         let one = |(b, _): (usize, _)| {
-            // The command's answer to what the channel shows, of powers. A current is at most
-            // what is asked for.
-            let answer = if Some(c) == position {
-                let of = &of_position[b];
-                of[(command, command)].re / of[(c, c)].re.max(f64::MIN_POSITIVE)
-            } else if set.channels[set.fitted[c]] == "iq_a" {
-                1.0
-            } else {
-                return 0.0;
+            let answer = match set.channels[set.fitted[c]] {
+                _ if witness == c => return 0.0,
+                _ if [Some(c), Some(witness)].contains(&position) => answer(b, [witness, c]),
+                // A current is at most what is asked for.
+                "iq_a" => 1.0,
+                _ => return 0.0,
             };
-            unanswered([&seen[b], &known[b]], [c, command], answer)
+            unanswered([&seen[b], &known[b]], [c, witness], answer)
         };
         bands.map(one).collect()
     };
@@ -104,22 +115,25 @@ pub(crate) fn slow_noise(
 
 type Matrix = DMatrix<Complex<f64>>;
 
-/// Noise of the position alone, some of it in any case.
-fn position_alone(all: &SensorNoise) -> SensorNoise {
+/// Noise of the position alone, at the load or at the motor, some of it in any case.
+fn alone(all: &SensorNoise, at_load: bool) -> SensorNoise {
+    let own = |noise: f64, is_it: bool| match is_it {
+        true => noise.max(f64::MIN_POSITIVE.sqrt()),
+        false => 0.0,
+    };
     SensorNoise {
-        position: all.position.max(f64::MIN_POSITIVE.sqrt()),
-        angle: 0.0,
-        speed: 0.0,
-        current: 0.0,
+        position: own(all.position, at_load),
+        angle: own(all.angle, !at_load),
+        ..SensorNoise::NONE
     }
 }
 
-/// Power that a `channel` shows beside the known noise and that the `command` does not answer,
+/// Power that a `channel` shows beside the known noise and that its `witness` does not answer,
 /// though it would with `answer` times as much; 0 if it does, or where that would not stand
 /// out. Of the spectral matrices that are `seen` and `known`.
-fn unanswered([seen, known]: [&Matrix; 2], [channel, command]: [usize; 2], answer: f64) -> f64 {
+fn unanswered([seen, known]: [&Matrix; 2], [channel, witness]: [usize; 2], answer: f64) -> f64 {
     let [all, noise] = [seen, known].map(|m| beside_others(m, channel));
-    let [shown, own] = [seen, known].map(|m| m[(command, command)].re);
+    let [shown, own] = [seen, known].map(|m| m[(witness, witness)].re);
     let added = all - noise;
     let asked = added * answer;
     let is_unanswered = asked >= WOULD_SHOW * own && shown - own < SHOWS * asked;

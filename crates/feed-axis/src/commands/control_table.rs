@@ -135,7 +135,7 @@ fn write_tolerances(document: &mut DocumentMut, found: &ControllerEstimate) -> R
 }
 
 /// The table of that name, new at the end if there is none.
-fn table<'a>(document: &'a mut DocumentMut, name: &str) -> Result<&'a mut Table> {
+pub(super) fn table<'a>(document: &'a mut DocumentMut, name: &str) -> Result<&'a mut Table> {
     let entry = document
         .entry(name)
         .or_insert_with(|| Item::Table(Table::new()));
@@ -177,7 +177,7 @@ fn written(value: f64, factor: f64, limits: Option<[f64; 2]>) -> f64 {
 }
 
 /// Seven digits of a number.
-fn digits(value: f64) -> f64 {
+pub(super) fn digits(value: f64) -> f64 {
     format!("{value:.6e}").parse().unwrap_or(value)
 }
 

@@ -1,6 +1,7 @@
 //! `identify`: friction from logs of an axis or of a simulated machine, transfer function from
 //! the model.
 
+mod axis_file;
 mod friction;
 mod from_logs;
 mod simulated;
@@ -20,7 +21,7 @@ pub use self::friction::{Found, Friction, RunPoint, SmallMotionPoint};
 use self::simulated::{PRESLIDING, SPEEDS};
 use self::words::Identified;
 use crate::context::{Common, Context};
-use crate::output::{print, remove};
+use crate::output::{print, remove, write_whole};
 use crate::progress::bar;
 use crate::store::Stage;
 
@@ -81,13 +82,13 @@ pub fn stage(context: &Context) -> Stage<'_> {
     match from_logs::remembered(context) {
         Some(logs) => {
             let settings = format!("{transfer:?} {logs}");
-            let files = &[FRICTION, TRANSFER, from_logs::LIST];
+            let files = &[FRICTION, TRANSFER, axis_file::NAME, from_logs::LIST];
             Stage::new(context, "identify", files, &settings, &[])
         }
         None => {
             let plan = simulated::plan(context);
             let settings = format!("{plan:?} {transfer:?} {machine}");
-            let files = &[FRICTION, TRANSFER, SPEEDS, PRESLIDING];
+            let files = &[FRICTION, TRANSFER, axis_file::NAME, SPEEDS, PRESLIDING];
             Stage::new(context, "identify", files, &settings, &[])
         }
     }
@@ -105,11 +106,22 @@ pub fn run(context: &Context) -> Result<()> {
     finish(context, &found)
 }
 
-/// Writes the friction, and finds the transfer functions beside it.
+/// Writes the friction, by itself and in the axis file, and finds the transfer functions beside it.
 fn finish(context: &Context, found: &Friction) -> Result<()> {
     let stage = stage(context);
     stage.begin()?;
     stage.write_json(FRICTION, found)?;
+    let axis_file = stage.path(axis_file::NAME);
+    let friction = &context.axis.friction;
+    let text = axis_file::with_friction(
+        &context.axis_text,
+        &context.axis_file,
+        &stage.path(""),
+        friction.kind(),
+        friction.at,
+        found,
+    )?;
+    write_whole(&axis_file, text.as_bytes())?;
     let fits = transfer(context)?;
     stage.write_json(TRANSFER, &fits)?;
     stage.finish()?;
@@ -117,6 +129,7 @@ fn finish(context: &Context, found: &Friction) -> Result<()> {
         units: context.axis.friction.at.units(),
         friction: found,
         transfer_functions: &fits,
+        axis_file,
     };
     print("identify", &identified)
 }

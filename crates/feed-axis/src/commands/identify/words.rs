@@ -1,6 +1,7 @@
 //! What was identified, as people read it.
 
 use std::fmt;
+use std::path::PathBuf;
 
 use axis_sim::SixDigits;
 use axis_sim::friction::FrictionUnits;
@@ -17,6 +18,8 @@ pub(super) struct Identified<'a> {
     pub friction: &'a Friction,
     /// Without and with friction feed-forward.
     pub transfer_functions: &'a [Transfer],
+    /// The axis file with this friction.
+    pub axis_file: PathBuf,
 }
 
 impl fmt::Display for Identified<'_> {
@@ -56,14 +59,19 @@ impl fmt::Display for Identified<'_> {
             writeln!(f, "  {open}")?;
         }
         match self.transfer_functions {
-            [alone, beside] => write!(
+            [alone, beside] => writeln!(
                 f,
                 "  transfer functions of order {} and {}",
                 alone.poles.len(),
                 beside.poles.len()
             ),
-            _ => f.write_str("  no transfer functions: the axis has no [control]"),
-        }
+            _ => f.write_str("  no transfer functions: the axis has no [control]\n"),
+        }?;
+        write!(
+            f,
+            "  axis file with this friction: {}",
+            self.axis_file.display()
+        )
     }
 }
 

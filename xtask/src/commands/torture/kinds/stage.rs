@@ -28,8 +28,8 @@ const FILES: [&str; 6] = [
     "train/manifest.json",
 ];
 
-/// Logs that friction was identified from, which no later stage reads.
-const LOGS: [&str; 2] = ["constant-speed.parquet", "pre-sliding.parquet"];
+/// The axis file with the friction, and the logs that it was identified from, which no later stage reads.
+const UNREAD: [&str; 3] = ["axis.toml", "constant-speed.parquet", "pre-sliding.parquet"];
 
 struct StageFolder {
     context: Context,
@@ -38,10 +38,13 @@ struct StageFolder {
 
 /// The stages `identify` and `train`, with small made-up results.
 pub fn kind(desk: &Path) -> Result<Box<dyn Kind>> {
-    let axis = Axis::parse("base", &small_screw())?;
+    let text = small_screw();
+    let axis = Axis::parse("base", &text)?;
     let context = Context {
         machine: axis.clone(),
         axis,
+        axis_file: "base.toml".into(),
+        axis_text: text,
         has_machine: false,
         out: desk.join("run"),
         seed: 1,
@@ -89,8 +92,8 @@ fn make(context: &Context) -> Result<()> {
         },
     )?;
     stage.write_json("transfer_functions.json", &[transfer(), transfer()])?;
-    for log in LOGS {
-        write_whole(&stage.path(log), b"")?;
+    for file in UNREAD {
+        write_whole(&stage.path(file), b"")?;
     }
     stage.finish()?;
     let stage = train::stage(context);
@@ -165,7 +168,7 @@ impl Kind for StageFolder {
                 train::load_training(context).map(drop),
             ]
         } else {
-            let logs = LOGS.map(|log| stages[0].read(log).map(drop));
+            let logs = UNREAD.map(|log| stages[0].read(log).map(drop));
             let results = [
                 identify::load_friction(context).map(drop),
                 identify::load_transfer(context).map(drop),
