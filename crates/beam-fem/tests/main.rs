@@ -1,5 +1,6 @@
 //! One test program: element, assembly, mesh and modes.
 
+mod against_opensees;
 mod against_ross;
 mod assembly_laws;
 mod axial;

@@ -95,12 +95,12 @@ pub(super) struct EffortShown {
     /// it
     /// was rounded by.
     pub(super) is_coarse: bool,
-    /// Most by which the mean of the standstill may be off: three standard deviations of its parts' means, as noise that is slow
-    /// for one part may be slow for all of it; half a step of a coarse command.
+    /// Most by which the mean of the standstill may be off: three standard deviations of the means of parts of its second half, as noise that
+    /// is slow for one part may be slow for all of it; half a step of a coarse command.
     pub(super) reach: f64,
 }
 
-/// Parts of a standstill whose means show how slow its noise is.
+/// Parts of half a standstill whose means show how slow its noise is.
 const PARTS: usize = 8;
 
 /// How well a log shows the command of its first standstill; `None` if it has no such rest, or
@@ -110,12 +110,14 @@ pub(super) fn effort_shown(log: &Log, period: f64, machine: &Axis) -> Option<Eff
     let rest = first_rest(log, period)?;
     let whole = command(log, machine, log.len().max(rest));
     let command = whole.or_else(|| command(log, machine, rest))?;
-    let noise = power(&command[rest / 2..rest]).sqrt();
+    // What an earlier move has left dies away in the first half.
+    let late = &command[rest / 2..rest];
+    let noise = power(late).sqrt();
     let changes = command.windows(2).map(|w| (w[1] - w[0]).abs());
     let least = 1e-9 * machine.actuator.limit().min(1e9);
     let step = changes.filter(|by| *by > least).fold(f64::MAX, f64::min);
     let step = if step < f64::MAX { step } else { 0.0 };
-    let parts = command[..rest].chunks(rest.div_ceil(PARTS));
+    let parts = late.chunks(late.len().div_ceil(PARTS).max(1));
     let means: Vec<f64> = parts.map(mean).collect();
     let is_coarse = step > noise;
     let of_step = if is_coarse { 0.5 * step } else { 0.0 };

@@ -39,7 +39,9 @@ pub(super) fn with_friction(
     let kind = lugre_at(at);
     let mut document: DocumentMut = moved(text, from, folder)?.parse().into_diagnostic()?;
     let friction = table(&mut document, "friction")?;
-    let decor = friction.decor().clone();
+    let mut decor = friction.decor().clone();
+    // What stood beside the old numbers is about them.
+    decor.set_suffix("   # found by `identify`, with 95 % intervals");
     *friction = Table::new();
     *friction.decor_mut() = decor;
     friction.insert("kind", Item::Value(kind.name.into()));

@@ -11,6 +11,7 @@ use std::path::PathBuf;
 
 use axis_pipeline::measured::{TrainingRms, ValidationRms};
 use axis_pipeline::transfer::{TransferPlan, identify_transfer};
+use axis_sim::Axis;
 use clap::Args;
 use compensator::TransferFunctionModel;
 use lugre::LuGre;
@@ -129,15 +130,27 @@ fn finish(context: &Context, found: &Friction) -> Result<()> {
         units: context.axis.friction.at.units(),
         friction: found,
         transfer_functions: &fits,
+        lacks: lacks_for_transfer(&context.axis),
         axis_file,
     };
     print("identify", &identified)
 }
 
-/// The transfer functions without and with friction feed-forward; none of an axis whose
-/// controller is not known.
+/// What an axis file must have for a transfer function of the tracking error, and this one has not.
+fn lacks_for_transfer(axis: &Axis) -> Option<&'static str> {
+    if !axis.has_control() {
+        Some("[control]")
+    } else if axis.trajectories.is_empty() {
+        Some("[[trajectory]]")
+    } else {
+        None
+    }
+}
+
+/// The transfer functions without and with friction feed-forward; none of an axis whose file lacks
+/// what they need.
 fn transfer(context: &Context) -> Result<Vec<Transfer>> {
-    if !context.axis.has_control() {
+    if lacks_for_transfer(&context.axis).is_some() {
         return Ok(Vec::new());
     }
     let plan = transfer_plan(context);
@@ -172,7 +185,8 @@ pub fn load_friction(context: &Context) -> Result<(Friction, LuGre)> {
 pub fn load_transfer(context: &Context) -> Result<([Transfer; 2], [TransferFunctionModel; 2])> {
     let fits: Vec<Transfer> = stage(context).read_json(TRANSFER)?;
     let fits: [Transfer; 2] = fits.try_into().map_err(|_| {
-        miette!("the axis has no [control], so no transfer function of its tracking error was identified; valid: strategies without one, or an axis file with [control]")
+        let lacks = lacks_for_transfer(&context.axis).unwrap_or("[control]");
+        miette!("the axis has no {lacks}, so no transfer function of its tracking error was identified; valid: strategies without one, or an axis file with {lacks}")
     })?;
     let model = |t: &Transfer| {
         TransferFunctionModel::new(t.period, t.direct, &t.poles, &t.coefficients).into_diagnostic()

@@ -18,6 +18,9 @@ pub(super) struct Identified<'a> {
     pub friction: &'a Friction,
     /// Without and with friction feed-forward.
     pub transfer_functions: &'a [Transfer],
+    /// What the axis file lacks for them.
+    #[serde(skip)]
+    pub lacks: Option<&'static str>,
     /// The axis file with this friction.
     pub axis_file: PathBuf,
 }
@@ -58,15 +61,16 @@ impl fmt::Display for Identified<'_> {
         for open in friction.open.iter().chain(&friction.notes) {
             writeln!(f, "  {open}")?;
         }
-        match self.transfer_functions {
-            [alone, beside] => writeln!(
+        match (self.transfer_functions, self.lacks) {
+            ([alone, beside], _) => writeln!(
                 f,
                 "  transfer functions of order {} and {}",
                 alone.poles.len(),
                 beside.poles.len()
-            ),
-            _ => f.write_str("  no transfer functions: the axis has no [control]\n"),
-        }?;
+            )?,
+            (_, Some(lacks)) => writeln!(f, "  no transfer functions: the axis has no {lacks}")?,
+            _ => {}
+        }
         write!(
             f,
             "  axis file with this friction: {}",
