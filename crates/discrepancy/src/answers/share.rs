@@ -34,6 +34,54 @@ const PARABOLAS: usize = 8;
 /// Fall of minus twice the log-likelihood below which it stays: one number by chance.
 const MOVED: f64 = 10.0;
 
+/// What the drive holds at the start of a log, while it is sought: by how much it is moved, as a share of the command's noise.
+struct Sought {
+    at: f64,
+    /// Minus twice the log-likelihood there.
+    misfit: f64,
+    /// Way downhill where three points do not show a minimum.
+    stride: f64,
+}
+
+impl Sought {
+    fn at_what_is_shown(misfit: f64) -> Self {
+        Self {
+            at: 0.0,
+            misfit,
+            stride: STRIDE,
+        }
+    }
+
+    /// Distance of the points beside it that are tried.
+    fn step(&self) -> f64 {
+        STEP * self.stride / STRIDE
+    }
+
+    /// Where the misfits a step below and above lead.
+    fn led_to(&self, [low, high]: [f64; 2]) -> f64 {
+        let (slope, bend) = (high - low, high + low - 2.0 * self.misfit);
+        match bend > 0.0 {
+            true => self.at - 0.5 * self.step() * slope / bend,
+            false => self.at - self.stride * slope.signum(),
+        }
+    }
+
+    /// Takes the likeliest of places and their misfits, if it is better than by chance; whether it is worth going on.
+    fn take(&mut self, tried: [(f64, f64); 3]) -> bool {
+        let likelier = |best: (f64, f64), one: (f64, f64)| if one.1 < best.1 { one } else { best };
+        let (at, misfit) = tried.into_iter().fold(tried[0], likelier);
+        if self.misfit - misfit > MOVED {
+            // Beyond the three points the parabola knows nothing.
+            let is_far = (at - self.at).abs() >= self.step();
+            (self.at, self.misfit) = (at, misfit);
+            return is_far;
+        }
+        // Near a sharp minimum it is no parabola: nearer points show it.
+        self.stride *= 0.5;
+        self.at != 0.0 && self.stride > SHORTEST_STRIDE
+    }
+}
+
 impl LogSet {
     /// Finds what belongs to the logs and changes with the model: what they have stored where
     /// they do not show it, and defects.
@@ -172,53 +220,32 @@ impl LogSet {
             let rest = set.rest(&set.simulate(machine, state)?);
             Ok(rest.iter().map(|log| misfit(log)).collect())
         };
-        let mut moves = vec![0.0; noise.len()];
-        let mut here = misfits(&moves)?;
-        let mut strides = vec![STRIDE; noise.len()];
+        let within = |i: usize, to: f64| {
+            let most = reach[i].max(0.0);
+            (reached[i] + to).clamp(-most, most) - reached[i]
+        };
+        let begun = misfits(&vec![0.0; noise.len()])?;
+        let mut sought: Vec<Sought> = begun.into_iter().map(Sought::at_what_is_shown).collect();
         for _ in 0..PARABOLAS {
-            let inside = |i: usize, by: f64| {
-                let most = reach[i].max(0.0);
-                (reached[i] + moves[i] + by).clamp(-most, most) - reached[i]
+            let all = |to: &dyn Fn(usize, &Sought) -> f64| -> Vec<f64> {
+                let each = sought.iter().enumerate();
+                each.map(|(i, s)| within(i, to(i, s))).collect()
             };
-            let steps: Vec<f64> = strides.iter().map(|by| STEP * by / STRIDE).collect();
-            let all =
-                |to: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..moves.len()).map(to).collect() };
-            let [below, above] = [-1.0, 1.0].map(|sign| all(&|i| inside(i, sign * steps[i])));
+            let [below, above] = [-1.0, 1.0].map(|sign| all(&|_, s| s.at + sign * s.step()));
             let [low, high] = [misfits(&below)?, misfits(&above)?];
-            let next = all(&|i| {
-                let (slope, bend) = (high[i] - low[i], high[i] + low[i] - 2.0 * here[i]);
-                inside(
-                    i,
-                    match bend > 0.0 {
-                        true => -0.5 * steps[i] * slope / bend,
-                        false => -strides[i] * slope.signum(),
-                    },
-                )
-            });
+            let next = all(&|i, s| s.led_to([low[i], high[i]]));
             let there = misfits(&next)?;
-            let mut has_left = false;
-            for i in 0..moves.len() {
+            let mut goes_on = false;
+            for (i, sought) in sought.iter_mut().enumerate() {
                 let tried = [(next[i], there[i]), (below[i], low[i]), (above[i], high[i])];
-                let best = tried
-                    .into_iter()
-                    .fold(tried[0], |best, one| match one.1 < best.1 {
-                        true => one,
-                        false => best,
-                    });
-                if here[i] - best.1 > MOVED {
-                    // Beyond the three points the parabola knows nothing, and near a sharp minimum it is none.
-                    has_left |= (best.0 - moves[i]).abs() >= steps[i];
-                    (moves[i], here[i]) = best;
-                } else if moves[i] != 0.0 {
-                    strides[i] *= 0.5;
-                    has_left |= strides[i] > SHORTEST_STRIDE;
-                }
+                goes_on |= sought.take(tried);
             }
-            if !has_left {
+            if !goes_on {
                 break;
             }
         }
-        let kept: Vec<f64> = moves.iter().zip(&noise).map(|(by, n)| by * n).collect();
+        let kept = sought.iter().zip(&noise).map(|(s, noise)| s.at * noise);
+        let kept: Vec<f64> = kept.collect();
         tracing::debug!(?kept, ?noise, "effort at the start, moved by");
         *self = self.with_efforts_moved(&kept);
         Ok(())

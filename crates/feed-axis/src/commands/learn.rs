@@ -15,7 +15,7 @@ use trajectories::Motion;
 
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
 use crate::out_file;
-use crate::output::{Worded, print, write_whole};
+use crate::output::{Worded, note, print, write_whole};
 
 /// Options of `learn`.
 #[derive(Args)]
@@ -41,6 +41,12 @@ pub fn command(options: &Options) -> Result<()> {
         .chain(position)
         .collect();
     let log = read_log(&options.log, &axis.log, &required).into_diagnostic()?;
+    if needed_position(&axis).is_none() {
+        note(format!(
+            "{} has no sensor at the load: what is learned is the error at the motor, which takes back what a plan does against the wind-up between motor and load",
+            axis.name
+        ));
+    }
     let of_log = || format!("in {}", options.log.display());
     let mut correction = match options.correction.exists() {
         true => read(&options.correction)?,

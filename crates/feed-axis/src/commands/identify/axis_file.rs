@@ -12,6 +12,7 @@ use toml_edit::{DocumentMut, Item, Table, Value};
 use super::friction::{Found, Friction};
 use crate::commands::control_table::{digits, table};
 use crate::commands::moved_file::moved;
+use crate::context::Context;
 
 /// Its name among the results.
 pub(super) const NAME: &str = "axis.toml";
@@ -26,18 +27,12 @@ const KEYS: [(&str, &str); 6] = [
     ("viscous", "σ2"),
 ];
 
-/// The text of the axis file `from` with `found` as its `[friction]`, in SI units, for a file in `folder`; its comments say
-/// how sure each number is. `old` is the friction of the file as it is.
-pub(super) fn with_friction(
-    text: &str,
-    from: &Path,
-    folder: &Path,
-    old: &PartKind<AxisFriction>,
-    at: FrictionPlace,
-    found: &Friction,
-) -> Result<String> {
-    let kind = lugre_at(at);
-    let mut document: DocumentMut = moved(text, from, folder)?.parse().into_diagnostic()?;
+/// The text of the axis file with `found` as its `[friction]`, in SI units, for a file in `folder`; its comments say how sure each number is.
+pub(super) fn with_friction(context: &Context, folder: &Path, found: &Friction) -> Result<String> {
+    let old = &context.axis.friction;
+    let kind = lugre_at(old.at);
+    let text = moved(&context.axis_text, &context.axis_file, folder)?;
+    let mut document: DocumentMut = text.parse().into_diagnostic()?;
     let friction = table(&mut document, "friction")?;
     let mut decor = friction.decor().clone();
     // What stood beside the old numbers is about them.
@@ -62,7 +57,7 @@ pub(super) fn with_friction(
     // Tolerances of numbers that this friction does not have.
     if let Some(tolerances) = document.get_mut("tolerances").and_then(Item::as_table_mut) {
         let has = |name: &str| kind.known.iter().any(|known| known.name == name);
-        for known in old.known.iter().filter(|known| !has(known.name)) {
+        for known in old.kind().known.iter().filter(|known| !has(known.name)) {
             tolerances.remove(known.name);
         }
     }

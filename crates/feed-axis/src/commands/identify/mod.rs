@@ -113,15 +113,7 @@ fn finish(context: &Context, found: &Friction) -> Result<()> {
     stage.begin()?;
     stage.write_json(FRICTION, found)?;
     let axis_file = stage.path(axis_file::NAME);
-    let friction = &context.axis.friction;
-    let text = axis_file::with_friction(
-        &context.axis_text,
-        &context.axis_file,
-        &stage.path(""),
-        friction.kind(),
-        friction.at,
-        found,
-    )?;
+    let text = axis_file::with_friction(context, &stage.path(""), found)?;
     write_whole(&axis_file, text.as_bytes())?;
     let fits = transfer(context)?;
     stage.write_json(TRANSFER, &fits)?;
